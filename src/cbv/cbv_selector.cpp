@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_options.h"
 #include "cbv/conflict_search.h"
 #include "e2e_cdiff/cbv/cbv_selection.h"

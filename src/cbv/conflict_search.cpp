@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_options.h"
 #include "e2e_cdiff/core/angle.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff collect`: drives sessions, or reads bags, and makes training samples.
 #include <algorithm>
 #include <deque>
 #include <filesystem>

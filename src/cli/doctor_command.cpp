@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff doctor`: checks what a session needs and says how to mend it.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -10,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "core/file.h"
+#include "core/guarded_process.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "inference/precision.h"
 #include "plugins/plugin_loader.h"
@@ -26,17 +28,7 @@ struct Finding {
   std::string text;  ///< what was found, or how to mend it
 };
 
-bool inPath(const std::string& program) {
-  const std::string path = std::getenv("PATH") ? std::getenv("PATH") : "";
-  std::size_t begin = 0;
-  while (begin <= path.size()) {
-    const std::size_t end = std::min(path.find(':', begin), path.size());
-    if (::access((fs::path(path.substr(begin, end - begin)) / program).c_str(), X_OK) == 0)
-      return true;
-    begin = end + 1;
-  }
-  return false;
-}
+bool inPath(const std::string& program) { return core::programInPath(program).has_value(); }
 
 Finding program(const std::string& name, const std::string& package) {
   const bool found = inPath(name);

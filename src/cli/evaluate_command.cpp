@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff evaluate`: runs a matrix of sessions in parallel and sums it up.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>

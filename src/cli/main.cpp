@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The program `cdiff`: its commands, and what it exits with.
 #include <iostream>
 
 #include "cli/commands.h"

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff metric`: one metric for the cases of a file, or the list of definitions.
 #include <iostream>
 #include <memory>
 
 #include "cli/commands.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "metrics/metric_registry.h"
 #include "record/metric_file.h"
 
 namespace cdiff::cli {
@@ -23,7 +25,7 @@ void addMetricCommand(CLI::App& program, int& exit_code) {
   command->callback([metric, file, &exit_code] {
     exit_code = ExitCode::kPassed;
     if (*metric == "definitions") {
-      std::cout << record::measureList();
+      std::cout << metrics::measureList();
       return;
     }
     if (file->empty()) {

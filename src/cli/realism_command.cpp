@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff realism`: how realistic driving is, by the realism meta-metric.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -12,8 +13,8 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/matrix.h"
 #include "evaluation/suite_selection.h"
-#include "realism/matched.h"
-#include "realism/pooled.h"
+#include "realism/matched_realism.h"
+#include "realism/pooled_realism.h"
 #include "realism/realism_tables.h"
 #include "session/session_request.h"
 #include "suite/seal.h"

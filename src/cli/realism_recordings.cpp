@@ -14,7 +14,7 @@
 #include "realism/recording.h"
 #ifdef E2E_CDIFF_WITH_ROS
 #include "node_graph/bags/replay.h"
-#include "realism/course_recorder.h"
+#include "realism/recording_builder.h"
 #endif
 
 namespace cdiff::cli {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "realism/pooled.h"
+#include "realism/pooled_realism.h"
 
 namespace cdiff::cli {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff replay`: a session's result again from its bag alone.
 #include <iostream>
 #include <memory>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff report`: pages and tables of evaluations and trainings that are there.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff run`: one session in this process, and its result folder.
 #include <atomic>
 #include <chrono>
 #include <filesystem>

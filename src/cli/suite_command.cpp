@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff suite`: generates a suite of ego routes with their networks.
 #include <iostream>
 #include <map>
 #include <memory>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff train`: starts cdiff_train, a program of its own with libtorch.
 #include <unistd.h>
 
 #include <filesystem>

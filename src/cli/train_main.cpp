@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The program `cdiff_train`: trains one planner with libtorch (`cdiff train`).
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <string>

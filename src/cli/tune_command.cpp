@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff tune`: tunes the tracker of plans on drawn tracks, compares trackers.
 #include <iostream>
 #include <memory>
 
@@ -32,7 +33,7 @@ void tune(const TuneArguments& arguments) {
        {evaluation::planTracker("published", planning::PlanTrackerOptions::published()),
         evaluation::planTracker("tuned", {}), evaluation::planTracker("found here", found),
         evaluation::pdmLiteTracker()})
-    rows.push_back(evaluation::judgeTracker(tracker, tracks, model));
+    rows.push_back(evaluation::evaluateTracker(tracker, tracks, model));
   std::cout << evaluation::tuningTable(rows) << "\nfound:\n";
   for (const evaluation::TunedKey& key : evaluation::tunedKeys())
     std::cout << evaluation::valueLine(key, found);

@@ -19,6 +19,8 @@
 
 namespace cdiff::collection {
 
+// A session that is driven to be recorded: who drives what in it, and how that is disturbed.
+
 /// A planner that drives now and then in data collection, and what it sees by.
 struct Policy {
   std::unique_ptr<planning::Planner> planner;

@@ -75,7 +75,7 @@ struct SampleKinds {
   bool in_junction = false;
   bool off_course = false;  ///< more than kOffCourse or kOffTurn off its route
   bool planned = false;     ///< the rollout is a plan (PolicyPlans)
-  bool displaced = false;   ///< put beside its route (OffsetSamples)
+  bool displaced = false;   ///< put beside its route (DisplacedSamples)
 };
 
 SampleKinds kindsOf(const learning::DrivingSample& sample, const SampleSurroundings& surroundings);

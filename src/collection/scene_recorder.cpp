@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
 
 namespace cdiff::collection {
@@ -75,48 +74,6 @@ void SceneRecorder::observeSelection(const cbv::CbvSelection& selection) {
     }
     scene_.driven.back()[assignment.slot] = drives_.at(key);
   }
-}
-
-namespace {
-
-std::unique_ptr<session::SessionSetup> setupOf(const learning::Scene& scene) {
-  session::ScenarioOptions options;
-  core::loadOptions({"scenario of scene '" + scene.name + "'", scene.scenario_yaml}, options);
-  map::ImportedNetwork import;
-  import.source = scene.network_source;
-  import.source_sha256 = scene.network_source_sha256;
-  import.text = scene.network_text;
-  if (scene.drives.empty())
-    throw core::InputError("scene '" + scene.name + "' holds no route of the ego");
-  return std::make_unique<session::SessionSetup>(options, std::move(import),
-                                                 scene.drives.front().route_points);
-}
-
-}  // namespace
-
-DrivenSession drivenSession(const learning::Scene& scene) {
-  DrivenSession session;
-  session.name = scene.name;
-  session.setup = setupOf(scene);
-  session.decisions = scene.decisions;
-  session.disturbed = scene.disturbed;
-  session.seconds = scene.seconds;
-  for (const learning::SceneDrive& drive : scene.drives) {
-    const bool ego = &drive == &scene.drives.front();
-    session.routes[{drive.vehicle_id, drive.selected_tick}] =
-        ego ? session.setup->egoRoute() : learning::routeOf(scene, drive, session.setup->network());
-  }
-  for (std::size_t i = 0; i < scene.driven.size(); ++i) {
-    for (const auto& [slot, number] : scene.driven[i]) {
-      const learning::SceneDrive& drive = scene.drives.at(number);
-      session.drives[scene.decisions.at(i).tick][slot] = {drive.vehicle_id, drive.selected_tick};
-    }
-  }
-  for (const auto& [tick, contact] : scene.contacts) {
-    session.contacts[contact.first].push_back(tick);
-    session.contacts[contact.second].push_back(tick);
-  }
-  return session;
 }
 
 }  // namespace cdiff::collection

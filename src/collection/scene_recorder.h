@@ -44,9 +44,4 @@ class SceneRecorder : public session::SessionObserver {
   std::map<DriveKey, std::size_t> drives_;
 };
 
-/// The session of a scene with the setup that it was driven in, without images. Decisions, drives
-/// and contacts are those of the session's bag. Throws InputError naming the scene and what is
-/// wrong with its scenario or network.
-DrivenSession drivenSession(const learning::Scene& scene);
-
 }  // namespace cdiff::collection

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "collection/dataset_statistics.h"
-#include "collection/offset_samples.h"
+#include "collection/displaced_samples.h"
 #include "collection/policy_plans.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
@@ -43,7 +43,7 @@ class SampleMaker {
         horizon_(static_cast<std::size_t>(options.architecture.horizon)),
         thinning_(static_cast<std::uint64_t>(session.setup->options().seed), "dataset_standing"),
         offsets_(static_cast<std::uint64_t>(session.setup->options().seed), "dataset_offset"),
-        offset_samples_(*session.setup, options) {
+        displaced_samples_(*session.setup, options) {
     for (std::size_t i = 0; i < session.decisions.size(); ++i)
       index_[session.decisions[i].tick] = i;
     if (options.policy_plans > 0) {
@@ -109,7 +109,7 @@ class SampleMaker {
     sample.maneuver = kinds.maneuver;
     sample.stop_reason = kinds.stop_reason;
     sample.auxiliary =
-        offset_samples_.targets(*surroundings.snapshot.find(sample.vehicle), surroundings);
+        displaced_samples_.targets(*surroundings.snapshot.find(sample.vehicle), surroundings);
     count(sample, kinds, statistics_);
     samples.push_back(std::move(sample));
     const std::size_t recorded = samples.size() - 1;
@@ -126,7 +126,7 @@ class SampleMaker {
     const traffic::TrafficSnapshot& snapshot = session_.decisions[begin - kPreviousDecisions];
     const traffic::Vehicle* vehicle = snapshot.find(sample.vehicle);
     if (vehicle == nullptr) return;
-    sample.previous_image = offset_samples_.seen(snapshot, *vehicle, vehicle->state);
+    sample.previous_image = displaced_samples_.seen(snapshot, *vehicle, vehicle->state);
   }
 
   std::vector<const traffic::TrafficSnapshot*> futureOf(std::size_t begin) const {
@@ -151,7 +151,7 @@ class SampleMaker {
   }
 
   /// For a share of the moving vehicles, appends a second sample: the last one with its vehicle
-  /// displaced from its route (OffsetSamples).
+  /// displaced from its route (DisplacedSamples).
   void addDisplaced(std::size_t begin, const SampleSurroundings& surroundings, SampleKinds kinds,
                     std::vector<learning::DrivingSample>& samples) {
     const learning::DrivingSample& sample = samples.back();
@@ -163,7 +163,7 @@ class SampleMaker {
         offsets_.uniform(key, 1, -options_.offset_lateral, options_.offset_lateral),
         offsets_.uniform(key, 2, -heading, heading)};
     const std::size_t back = sample.previous_image.empty() ? 0 : kPreviousDecisions;
-    auto displaced = offset_samples_.displace(
+    auto displaced = displaced_samples_.displace(
         sample, surroundings, session_.decisions[begin - back], futureOf(begin), offset);
     if (!displaced) return;
     kinds.displaced = true;
@@ -269,7 +269,7 @@ class SampleMaker {
   std::size_t horizon_;
   core::RandomStream thinning_;
   core::RandomStream offsets_;
-  OffsetSamples offset_samples_;
+  DisplacedSamples displaced_samples_;
   std::optional<PolicyPlans> plans_;
   std::map<std::uint64_t, std::size_t> index_;             ///< of the decision, by tick
   std::map<std::pair<std::uint64_t, int>, Place> places_;  ///< by tick and slot

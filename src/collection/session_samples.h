@@ -19,6 +19,8 @@
 
 namespace cdiff::collection {
 
+// Training samples from a session that was recorded.
+
 /// A stretch during which one vehicle follows one route: vehicle and the tick it was selected at.
 using DriveKey = std::pair<std::string, std::uint64_t>;
 

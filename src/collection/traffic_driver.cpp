@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_options.h"
 #include "cbv/cbv_selector.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/file_descriptor.h"
 #include "core/program.h"
 #include "core/spelling.h"
 #include "core/text.h"
@@ -115,22 +116,12 @@ void requireRegular(mode_t mode, const std::string& name) {
                    std::to_string(most) + " were expected");
 }
 
-/// A descriptor that is closed with its object.
-class OpenedFile {
- public:
-  /// Opens a regular file. Does not wait for the other end of a pipe that took its place meanwhile.
-  OpenedFile(const fs::path& path, const std::string& name)
-      : descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {
-    if (descriptor_ < 0) failReading(name);
-  }
-  ~OpenedFile() { ::close(descriptor_); }
-  OpenedFile(const OpenedFile&) = delete;
-  OpenedFile& operator=(const OpenedFile&) = delete;
-  int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
+/// Opens a regular file. Does not wait for the other end of a pipe that took its place meanwhile.
+FileDescriptor opened(const fs::path& path, const std::string& name) {
+  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (!file) failReading(name);
+  return file;
+}
 
 /// Bytes of an opened file that has about `expected` of them; a file that grows beyond `most` while
 /// it is read is refused.
@@ -196,13 +187,13 @@ void requireRegularFile(const fs::path& path, const std::string& what) {
 std::string readFile(const fs::path& path, const std::string& what, std::uintmax_t most) {
   requireRegularFile(path, what);  // to open a device may already have an effect
   const std::string name = what + " '" + path.string() + "'";
-  const OpenedFile file(path, name);
+  const FileDescriptor file = opened(path, name);
   struct stat status {};
-  if (::fstat(file.descriptor(), &status) != 0) failReading(name);
+  if (::fstat(file.get(), &status) != 0) failReading(name);
   requireRegular(status.st_mode, name);
   const auto size = static_cast<std::uintmax_t>(status.st_size);
   if (size > most) refuseSize(name, size, most);
-  return contentWithin(file.descriptor(), size, most, name);
+  return contentWithin(file.get(), size, most, name);
 }
 
 void writeFileAtomically(const fs::path& path, std::string_view content) {

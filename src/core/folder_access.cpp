@@ -40,10 +40,10 @@ fs::path withoutSlash(const fs::path& folder) {
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
-int openFolder(const fs::path& folder) {
+FileDescriptor openFolder(const fs::path& folder) {
   constexpr int kFlags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
-  const int descriptor = ::open(folder.c_str(), kFlags);
-  if (descriptor >= 0) return descriptor;
+  FileDescriptor descriptor(::open(folder.c_str(), kFlags));
+  if (descriptor) return descriptor;
   int reason = errno;
   std::error_code none;
   if (fs::is_symlink(folder, none) && ::access(folder.c_str(), F_OK) != 0) reason = errno;
@@ -56,7 +56,7 @@ int openFolder(const fs::path& folder) {
   failOn(folder, "open the folder", reason);
 }
 
-int makeFolder(const fs::path& folder) {
+FileDescriptor makeFolder(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_symlink(folder, error)) fs::create_directories(folder, error);
   if (error && (!fs::exists(folder) || fs::is_directory(folder)))

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/file_descriptor.h"
+
 namespace cdiff::core {
 
 // What locks and records do with folders: no link is followed, and nothing is replaced.
@@ -27,9 +29,9 @@ int placeUnlessThere(const std::filesystem::path& from, const std::filesystem::p
 std::filesystem::path withoutSlash(const std::filesystem::path& folder);
 
 /// Opens a folder that is no link. Throws InputError naming what is there.
-int openFolder(const std::filesystem::path& folder);
+FileDescriptor openFolder(const std::filesystem::path& folder);
 
 /// Makes a folder and its parents where they are missing, and opens it.
-int makeFolder(const std::filesystem::path& folder);
+FileDescriptor makeFolder(const std::filesystem::path& folder);
 
 }  // namespace cdiff::core

@@ -51,6 +51,11 @@ std::string holderText(int descriptor) {
          content["host"] + ", since " + content["since"];
 }
 
+InputError heldBy(const fs::path& folder, int descriptor) {
+  return InputError("'" + folder.string() + "' is being written by " + holderText(descriptor) +
+                    "; wait until it has ended, or give another folder");
+}
+
 bool isLock(int descriptor) {
   struct stat status {};
   const auto content = contentOf(descriptor);
@@ -78,8 +83,6 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& program)
   try {
     takeLock();
   } catch (...) {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (directory_ >= 0) ::close(directory_);
     removeMade();
     throw;
   }
@@ -87,20 +90,16 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& program)
 
 void FolderLock::requireUnlocked(const fs::path& folder) {
   constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  const int descriptor = ::open((folder / kFile).c_str(), kFlags);
-  if (descriptor < 0) return;
-  const bool held =
-      isLock(descriptor) && ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  const InputError error("'" + folder.string() + "' is being written by " + holderText(descriptor) +
-                         "; wait until it has ended, or give another folder");
-  ::close(descriptor);
-  if (held) throw error;
+  const FileDescriptor file(::open((folder / kFile).c_str(), kFlags));
+  if (!file || !isLock(file.get())) return;
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw heldBy(folder, file.get());
 }
 
 FolderLock::~FolderLock() {
-  if (isSameFile(descriptor_, directory_, kFile)) ::unlinkat(directory_, kFile, 0);
-  ::close(descriptor_);
-  ::close(directory_);
+  if (isSameFile(descriptor_.get(), directory_.get(), kFile))
+    ::unlinkat(directory_.get(), kFile, 0);
+  descriptor_.close();  // a file system may keep the name of an open file
   removeMade();
 }
 
@@ -108,23 +107,18 @@ void FolderLock::removeMade() const {
   for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // refused where it holds anything
 }
 
-InputError FolderLock::heldBy() const {
-  return InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
-                    "; wait until it has ended, or give another folder");
-}
-
 void FolderLock::takeLock() {
   const std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   while (!tryLock()) {
-    if (std::chrono::steady_clock::now() - begin > kPatience) throw heldBy();
+    if (std::chrono::steady_clock::now() - begin > kPatience)
+      throw heldBy(folder_, descriptor_.get());
     std::this_thread::sleep_for(kPeriod);
   }
 }
 
 /// Whether the lock is ours. It is not where another process has it or removes it just now.
 bool FolderLock::tryLock() {
-  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-  if (directory_ >= 0) ::close(std::exchange(directory_, -1));
+  descriptor_.close();
   directory_ = makeFolder(folder_);
   return placeSigned() || takeOver();
 }
@@ -133,19 +127,15 @@ bool FolderLock::tryLock() {
 bool FolderLock::placeSigned() {
   const fs::path file = folder_ / kFile;
   std::string draft = file.string() + ".XXXXXX";
-  const int descriptor = ::mkostemp(draft.data(), O_CLOEXEC);
-  if (descriptor < 0) failOn(file, "write", errno);
+  FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
+  if (!descriptor) failOn(file, "write", errno);
   const std::string text = signature();
   const bool written =
-      ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor, 0644) == 0 &&
-      ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+      ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor.get(), 0644) == 0 &&
+      ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
   const int reason = written ? placeUnlessThere(draft, file) : errno;
-  const bool placed = isSameFile(descriptor, directory_, kFile);
-  if (placed) {
-    descriptor_ = descriptor;
-  } else {
-    ::close(descriptor);
-  }
+  const bool placed = isSameFile(descriptor.get(), directory_.get(), kFile);
+  if (placed) descriptor_ = std::move(descriptor);
   ::unlink(draft.c_str());
   if (!placed && reason != EEXIST) failOn(file, "write", reason);
   return placed;
@@ -153,28 +143,30 @@ bool FolderLock::placeSigned() {
 
 /// Takes the lock of a process of this host that is gone.
 bool FolderLock::takeOver() {
+  constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
   const fs::path file = folder_ / kFile;
-  descriptor_ = ::openat(directory_, kFile, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor_ < 0 && errno == ENOENT) return false;
-  if (descriptor_ < 0 && errno != ELOOP && errno != ENXIO && errno != EISDIR)
+  descriptor_ = FileDescriptor(::openat(directory_.get(), kFile, kFlags));
+  if (!descriptor_ && errno == ENOENT) return false;
+  if (!descriptor_ && errno != ELOOP && errno != ENXIO && errno != EISDIR)
     failOn(file, "write", errno);
-  if (descriptor_ < 0 || !isLock(descriptor_)) {
+  if (!descriptor_ || !isLock(descriptor_.get())) {
     throw InputError("'" + file.string() +
                      "' is no lock of this program; move it away, or give another folder");
   }
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  if (::flock(descriptor_.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno == EWOULDBLOCK || errno == EINTR) return false;
     failOn(file, "lock", errno);
   }
-  if (!isSameFile(descriptor_, directory_, kFile)) return false;
+  if (!isSameFile(descriptor_.get(), directory_.get(), kFile)) return false;
   // The kernel of another host may not have announced its lock to ours.
-  if (contentOf(descriptor_)["host"] != hostName()) {
-    throw InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
-                     "; if that process is gone, delete '" + file.string() + "'");
+  if (contentOf(descriptor_.get())["host"] != hostName()) {
+    throw InputError("'" + folder_.string() + "' is being written by " +
+                     holderText(descriptor_.get()) + "; if that process is gone, delete '" +
+                     file.string() + "'");
   }
   const std::string text = signature();
-  if (::ftruncate(descriptor_, 0) != 0 ||
-      ::pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
+  if (::ftruncate(descriptor_.get(), 0) != 0 ||
+      ::pwrite(descriptor_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
     failOn(file, "write", errno);
   return true;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_descriptor.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {
@@ -36,14 +37,13 @@ class FolderLock {
   bool placeSigned();
   bool takeOver();
   void removeMade() const;
-  InputError heldBy() const;
   std::string signature() const;
 
   std::filesystem::path folder_;
   std::string program_;
   std::vector<std::filesystem::path> made_;  ///< innermost first
-  int directory_ = -1;
-  int descriptor_ = -1;  ///< of the lock file
+  FileDescriptor directory_;
+  FileDescriptor descriptor_;  ///< of the lock file
 };
 
 }  // namespace cdiff::core

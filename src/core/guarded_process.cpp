@@ -51,14 +51,19 @@ bool isProgram(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::optional<std::filesystem::path> programInPath(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  for (const std::string& folder : splitText(path != nullptr ? path : "", ':')) {
+    const std::filesystem::path file = std::filesystem::path(folder) / name;
+    if (isProgram(file)) return file;
+  }
+  return std::nullopt;
+}
+
 std::filesystem::path findProgram(const std::string& name, const std::string& package) {
   if (name.find('/') != std::string::npos && isProgram(name)) return name;
   if (name.find('/') == std::string::npos && !name.empty()) {
-    const char* path = std::getenv("PATH");
-    for (const std::string& folder : splitText(path != nullptr ? path : "", ':')) {
-      const std::filesystem::path file = std::filesystem::path(folder) / name;
-      if (isProgram(file)) return file;
-    }
+    if (const auto file = programInPath(name)) return *file;
   }
   throw InputError("the program '" + name + "' was not found; install the package " + package +
                    " or name the program's file");
@@ -78,13 +83,11 @@ std::string signalText(int signal) {
 
 ProcessOutput::ProcessOutput() : descriptor_(::memfd_create("process output", MFD_CLOEXEC)) {}
 
-ProcessOutput::~ProcessOutput() { ::close(descriptor_); }
-
 std::string ProcessOutput::end(std::size_t most) const {
-  const off_t size = ::lseek(descriptor_, 0, SEEK_END);
+  const off_t size = ::lseek(descriptor_.get(), 0, SEEK_END);
   std::string text(std::min(static_cast<std::size_t>(std::max<off_t>(size, 0)), most), '\0');
   const off_t begin = size - static_cast<off_t>(text.size());
-  const ssize_t count = ::pread(descriptor_, text.data(), text.size(), begin);
+  const ssize_t count = ::pread(descriptor_.get(), text.data(), text.size(), begin);
   text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
   return text;
 }

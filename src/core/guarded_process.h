@@ -10,11 +10,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "core/file_descriptor.h"
+
 namespace cdiff::core {
+
+// Child processes: the program, its environment and streams, and GuardedProcess, which runs it.
+
+/// The first program of a name (without slash) in PATH.
+std::optional<std::filesystem::path> programInPath(const std::string& name);
 
 /// The file that a program name stands for: itself when it holds a slash, else the first of that
 /// name in PATH. Throws InputError naming the program and the Debian package to install.
@@ -41,15 +49,12 @@ struct ProcessStreams {
 class ProcessOutput {
  public:
   ProcessOutput();
-  ~ProcessOutput();
-  ProcessOutput(const ProcessOutput&) = delete;
-  ProcessOutput& operator=(const ProcessOutput&) = delete;
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.get(); }
   /// The last `most` bytes, or fewer, of what was printed so far.
   std::string end(std::size_t most = 4000) const;
 
  private:
-  int descriptor_;
+  FileDescriptor descriptor_;
 };
 
 /// A child process in a process group of its own that never outlives this process, even when this

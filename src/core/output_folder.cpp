@@ -38,25 +38,21 @@ class Record {
   Record(int directory, const fs::path& folder, bool must)
       : directory_(directory), folder_(folder) {
     do {
-      close();
       descriptor_ = open();
-      if (descriptor_ < 0 && errno == ENOENT) {
+      if (!descriptor_ && errno == ENOENT) {
         if (!must) return;
         make();
         continue;
       }
-      if (descriptor_ < 0 && errno != ELOOP && errno != EISDIR && errno != ENXIO)
+      if (!descriptor_ && errno != ELOOP && errno != EISDIR && errno != ENXIO)
         failOn(folder / OutputFolder::kRecord, "write", errno);
-      if (descriptor_ < 0 || !readNames()) {
-        close();
+      if (!descriptor_ || !readNames()) {
         throw InputError("'" + (folder / OutputFolder::kRecord).string() +
                          "' is no record of this program; move it away, or give another folder");
       }
-    } while (!isSameFile(descriptor_, directory, OutputFolder::kRecord));  // removed meanwhile
+    } while (
+        !isSameFile(descriptor_.get(), directory, OutputFolder::kRecord));  // removed meanwhile
   }
-  ~Record() { close(); }
-  Record(const Record&) = delete;
-  Record& operator=(const Record&) = delete;
 
   const std::set<std::string>& names() const { return names_; }
   bool lists(const std::string& name) const { return names_.count(name) != 0; }
@@ -76,19 +72,15 @@ class Record {
     }
   }
   void remove() const {
-    if (descriptor_ >= 0) ::unlinkat(directory_, OutputFolder::kRecord, 0);
+    if (descriptor_) ::unlinkat(directory_, OutputFolder::kRecord, 0);
   }
 
  private:
-  void close() {
-    if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-  }
-
-  int open() const {
+  FileDescriptor open() const {
     constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-    const int descriptor = ::openat(directory_, OutputFolder::kRecord, O_RDWR | kFlags);
-    if (descriptor >= 0 || (errno != EACCES && errno != EROFS)) return descriptor;
-    return ::openat(directory_, OutputFolder::kRecord, O_RDONLY | kFlags);
+    FileDescriptor descriptor(::openat(directory_, OutputFolder::kRecord, O_RDWR | kFlags));
+    if (descriptor || (errno != EACCES && errno != EROFS)) return descriptor;
+    return FileDescriptor(::openat(directory_, OutputFolder::kRecord, O_RDONLY | kFlags));
   }
 
   /// A new file beside the record that holds these names.
@@ -97,14 +89,13 @@ class Record {
     std::string text = std::string(kRecordHead) + "\n";
     for (const std::string& name : names) text += name + "\n";
     std::string draft = file.string() + ".XXXXXX";
-    const int descriptor = ::mkostemp(draft.data(), O_CLOEXEC);
-    if (descriptor < 0) failOn(file, "write", errno);
+    const FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
+    if (!descriptor) failOn(file, "write", errno);
     errno = ENOSPC;  // where less than all is written
-    const bool written =
-        ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
-        ::fchmod(descriptor, 0644) == 0;
+    const bool written = ::pwrite(descriptor.get(), text.data(), text.size(), 0) ==
+                             static_cast<ssize_t>(text.size()) &&
+                         ::fchmod(descriptor.get(), 0644) == 0;
     const int reason = errno;
-    ::close(descriptor);
     if (written) return draft;
     ::unlink(draft.c_str());
     failOn(file, "write", reason);
@@ -121,11 +112,11 @@ class Record {
   /// Whether it is a record.
   bool readNames() {
     struct stat status {};
-    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) return false;
+    if (::fstat(descriptor_.get(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
     lock();
-    if (::fstat(descriptor_, &status) != 0 || status.st_size > kLargestRecord) return false;
+    if (::fstat(descriptor_.get(), &status) != 0 || status.st_size > kLargestRecord) return false;
     std::string text(static_cast<std::size_t>(status.st_size), '\0');
-    const ssize_t count = ::pread(descriptor_, text.data(), text.size(), 0);
+    const ssize_t count = ::pread(descriptor_.get(), text.data(), text.size(), 0);
     text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
     names_.clear();
     if (text.rfind(kRecordHead, 0) != 0) return false;
@@ -141,7 +132,7 @@ class Record {
 
   void lock() const {
     const auto begin = std::chrono::steady_clock::now();
-    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    while (::flock(descriptor_.get(), LOCK_EX | LOCK_NB) != 0) {
       if (std::chrono::steady_clock::now() - begin > kRecordPatience)
         throw InputError("another process holds '" + (folder_ / OutputFolder::kRecord).string() +
                          "' for longer than 5 s; end it, or give another folder");
@@ -161,7 +152,7 @@ class Record {
 
   int directory_;
   fs::path folder_;
-  int descriptor_ = -1;
+  FileDescriptor descriptor_;
   std::set<std::string> names_;
 };
 
@@ -190,26 +181,17 @@ void requireOwn(int directory, const fs::path& folder, const std::string& name,
 void OutputFolder::requireFree(const fs::path& folder, const std::vector<std::string>& names) {
   std::error_code none;
   if (!fs::is_directory(folder, none) && !fs::exists(fs::symlink_status(folder, none))) return;
-  const int directory = openFolder(withoutSlash(folder));
-  try {
-    const Record record(directory, folder, false);
-    for (const std::string& name : names) {
-      requireOwn(directory, folder, name, record);
-      requireOwn(directory, folder, name + kPart, record);
-    }
-  } catch (...) {
-    ::close(directory);
-    throw;
+  const FileDescriptor directory = openFolder(withoutSlash(folder));
+  const Record record(directory.get(), folder, false);
+  for (const std::string& name : names) {
+    requireOwn(directory.get(), folder, name, record);
+    requireOwn(directory.get(), folder, name + kPart, record);
   }
-  ::close(directory);
 }
 
 bool OutputFolder::lists(const fs::path& folder, const std::string& name) {
-  const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return false;
-  const bool listed = Record(directory, folder, false).lists(name);
-  ::close(directory);
-  return listed;
+  const FileDescriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return directory && Record(directory.get(), folder, false).lists(name);
 }
 
 OutputFolder::OutputFolder(const fs::path& folder)
@@ -221,25 +203,21 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::string& program)
       path_(withoutSlash(fs::absolute(folder).lexically_normal())),
       descriptor_(openFolder(path_)) {}
 
-OutputFolder::~OutputFolder() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
 fs::path OutputFolder::path() const {
   struct stat held {};
   struct stat named {};
-  if (::fstat(descriptor_, &held) != 0) failOn(path_, "find", errno);
+  if (::fstat(descriptor_.get(), &held) != 0) failOn(path_, "find", errno);
   if (::stat(path_.c_str(), &named) == 0 && isSame(held, named)) return path_;
   std::error_code error;
-  const fs::path now = fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor_), error);
+  const fs::path now =
+      fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor_.get()), error);
   if (!error && ::stat(now.c_str(), &named) == 0 && isSame(held, named)) return now;
   makeAgain();
   return path_;
 }
 
 void OutputFolder::makeAgain() const {
-  const int descriptor = makeFolder(path_);
-  ::close(std::exchange(descriptor_, descriptor));
+  descriptor_ = makeFolder(path_);
   deleted_ = true;
 }
 
@@ -251,8 +229,8 @@ fs::path OutputFolder::claim(const std::string& name) {
     throw InputError("'" + (folder / name).string() +
                      "' is no name for a file: it holds a slash or a control character");
   }
-  Record record(descriptor_, folder, true);
-  requireOwn(descriptor_, folder, name, record);
+  Record record(descriptor_.get(), folder, true);
+  requireOwn(descriptor_.get(), folder, name, record);
   record.add(name);
   return folder / name;
 }
@@ -265,7 +243,7 @@ void OutputFolder::write(const std::string& name, std::string_view content) {
 
 void OutputFolder::remove(const std::set<std::string>& names) {
   const fs::path folder = path();
-  Record record(descriptor_, folder, false);
+  Record record(descriptor_.get(), folder, false);
   std::set<std::string> gone;
   for (const std::string& name : names) {
     if (record.lists(name) && removeEntry(folder, name)) gone.insert(name);
@@ -276,18 +254,18 @@ void OutputFolder::remove(const std::set<std::string>& names) {
 /// Whether nothing of the program's is left under this name, which the record lists.
 bool OutputFolder::removeEntry(const fs::path& folder, const std::string& name) {
   struct stat status {};
-  if (!isThere(descriptor_, name, status)) return true;
-  if (S_ISREG(status.st_mode) && ::unlinkat(descriptor_, name.c_str(), 0) != 0)
+  if (!isThere(descriptor_.get(), name, status)) return true;
+  if (S_ISREG(status.st_mode) && ::unlinkat(descriptor_.get(), name.c_str(), 0) != 0)
     failOn(folder / name, "replace", errno);
   if (!S_ISDIR(status.st_mode)) return true;
   OutputFolder(folder / name).clear();
   // Refused where a file of the user's is in it: then it stays, and stays on the record.
-  return ::unlinkat(descriptor_, name.c_str(), AT_REMOVEDIR) == 0;
+  return ::unlinkat(descriptor_.get(), name.c_str(), AT_REMOVEDIR) == 0;
 }
 
 std::set<std::string> OutputFolder::names() const {
   const fs::path folder = path();
-  return Record(descriptor_, folder, false).names();
+  return Record(descriptor_.get(), folder, false).names();
 }
 
 void OutputFolder::clear() { remove(names()); }
@@ -312,14 +290,14 @@ void OutputFolder::requireInPlace() const {
 
 void OutputFolder::forget() {
   const fs::path folder = path();
-  Record(descriptor_, folder, false).remove();
+  Record(descriptor_.get(), folder, false).remove();
 }
 
 fs::path OutputFolder::subfolder(const std::string& name) {
   const fs::path folder = path();
   struct stat status {};
-  if (!isThere(descriptor_, name, status)) claim(name);
-  ::close(makeFolder(folder / name));
+  if (!isThere(descriptor_.get(), name, status)) claim(name);
+  makeFolder(folder / name);
   return folder / name;
 }
 
@@ -330,7 +308,8 @@ PendingFile::PendingFile(OutputFolder& folder, const std::string& name, std::siz
   rlimit limit{};
   ::getrlimit(RLIMIT_FSIZE, &limit);
   const auto size = static_cast<off_t>(std::min<rlim_t>(room, limit.rlim_cur));
-  const bool taken = size == 0 || ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, size) == 0 ||
+  const bool taken = size == 0 ||
+                     ::fallocate(descriptor_.get(), FALLOC_FL_KEEP_SIZE, 0, size) == 0 ||
                      errno == EOPNOTSUPP || errno == ENOSYS;
   if (!taken) fail(errno);
 }
@@ -348,13 +327,13 @@ void PendingFile::open() {
   folder_.remove({part_});  // of a write that was cut off
   folder_.claim(part_);
   constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-  descriptor_ = ::openat(folder_.descriptor_, part_.c_str(), kFlags, 0644);
-  if (descriptor_ < 0) fail(errno);
+  descriptor_ = FileDescriptor(::openat(folder_.descriptor_.get(), part_.c_str(), kFlags, 0644));
+  if (!descriptor_) fail(errno);
 }
 
 void PendingFile::append(std::string_view text) {
   while (!text.empty()) {
-    const ssize_t written = ::write(descriptor_, text.data(), text.size());
+    const ssize_t written = ::write(descriptor_.get(), text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(errno);
     written_ += written;
@@ -364,13 +343,13 @@ void PendingFile::append(std::string_view text) {
 
 void PendingFile::finish() {
   // The room that was not needed is given back.
-  if (::ftruncate(descriptor_, written_) != 0) fail(errno);
+  if (::ftruncate(descriptor_.get(), written_) != 0) fail(errno);
   folder_.path();  // looks where the folder is
-  if (!isSameFile(descriptor_, folder_.descriptor_, part_.c_str())) restore();
-  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);
-  if (::close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+  if (!isSameFile(descriptor_.get(), folder_.descriptor_.get(), part_.c_str())) restore();
+  if (::fsync(descriptor_.get()) != 0 && errno != EINVAL) fail(errno);
+  if (descriptor_.close() != 0) fail(errno);
   claimOrKeep();
-  const int directory = folder_.descriptor_;
+  const int directory = folder_.descriptor_.get();
   if (::renameat(directory, part_.c_str(), directory, name_.c_str()) != 0) fail(errno);
   folder_.remove({part_});
 }
@@ -388,17 +367,16 @@ void PendingFile::claimOrKeep() {
 
 /// Writes what was written so far into a new file: the old one was deleted with its folder.
 void PendingFile::restore() {
-  const int deleted = std::exchange(descriptor_, -1);
+  const FileDescriptor deleted = std::move(descriptor_);
   std::string content(static_cast<std::size_t>(std::exchange(written_, 0)), '\0');
-  const ssize_t count = ::pread(deleted, content.data(), content.size(), 0);
-  ::close(deleted);
+  const ssize_t count = ::pread(deleted.get(), content.data(), content.size(), 0);
   if (count != static_cast<ssize_t>(content.size())) fail(EIO);
   open();
   append(content);
 }
 
 void PendingFile::discard() {
-  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  descriptor_.close();
   if (!kept_) folder_.remove({part_});
 }
 

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/file_descriptor.h"
 #include "core/folder_lock.h"
 
 namespace cdiff::core {
@@ -41,7 +42,6 @@ class OutputFolder {
   explicit OutputFolder(const std::filesystem::path& folder);
   /// The same, and locks it for `program` ("cdiff run") as long as the object exists.
   OutputFolder(const std::filesystem::path& folder, const std::string& program);
-  ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
@@ -80,7 +80,7 @@ class OutputFolder {
 
   std::unique_ptr<FolderLock> lock_;
   std::filesystem::path path_;
-  mutable int descriptor_ = -1;  ///< stays with the folder when it is renamed
+  mutable FileDescriptor descriptor_;  ///< stays with the folder when it is renamed
   mutable bool deleted_ = false;
 };
 
@@ -114,7 +114,7 @@ class PendingFile {
   std::string part_;
   off_t written_ = 0;
   bool kept_ = false;  ///< the part stays
-  int descriptor_ = -1;
+  FileDescriptor descriptor_;
 };
 
 /// OutputFolder::write for a file given by its path.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <deque>
 #include <string>
 #include <string_view>
@@ -35,17 +36,18 @@ class Registry {
   void add(Descriptor descriptor, const std::string& source) {
     const std::string what = source + ": " + kind_ + " '" + descriptor.name + "'";
     if (!isSnakeCase(descriptor.name)) throw InputError(what + ": its name must be snake_case");
-    if (const Entry* other = entry(descriptor.name)) {
-      throw InputError(what + " is already registered by " + other->source +
+    if (find(descriptor.name) != nullptr) {
+      throw InputError(what + " is already registered by " + sourceOf(descriptor.name) +
                        "; one of the two needs another name");
     }
-    entries_.push_back({std::move(descriptor), source});
+    entries_.push_back(std::move(descriptor));
+    sources_.push_back(source);
   }
 
   /// nullptr for an unknown name.
   const Descriptor* find(const std::string& name) const {
-    const Entry* found = entry(name);
-    return found == nullptr ? nullptr : &found->descriptor;
+    const std::size_t index = indexOf(name);
+    return index == entries_.size() ? nullptr : &entries_[index];
   }
   /// Throws InputError naming the nearest known one for an unknown name.
   const Descriptor& at(const std::string& name) const {
@@ -55,29 +57,27 @@ class Registry {
   }
   /// Who added it; "" for an unknown name.
   std::string sourceOf(const std::string& name) const {
-    const Entry* found = entry(name);
-    return found == nullptr ? "" : found->source;
+    const std::size_t index = indexOf(name);
+    return index == entries_.size() ? "" : sources_[index];
   }
   std::vector<std::string> names() const {
     std::vector<std::string> all;
-    for (const Entry& entry : entries_) all.push_back(entry.descriptor.name);
+    for (const Descriptor& entry : entries_) all.push_back(entry.name);
     return all;
   }
+  const std::deque<Descriptor>& entries() const { return entries_; }
 
  private:
-  struct Entry {
-    Descriptor descriptor;
-    std::string source;
-  };
-  const Entry* entry(const std::string& name) const {
-    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& each) {
-      return each.descriptor.name == name;
-    });
-    return found == entries_.end() ? nullptr : &*found;
+  /// entries_.size() for an unknown name.
+  std::size_t indexOf(const std::string& name) const {
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const Descriptor& each) { return each.name == name; });
+    return static_cast<std::size_t>(found - entries_.begin());
   }
 
   std::string kind_;
-  std::deque<Entry> entries_;
+  std::deque<Descriptor> entries_;
+  std::vector<std::string> sources_;  ///< who added each entry
 };
 
 }  // namespace cdiff::core

@@ -40,13 +40,13 @@ void removeOrphans(const fs::path& parent) {
     if (age >= std::chrono::seconds(kOldEnough).count()) orphans.push_back(entry->path());
   }
   for (const fs::path& orphan : orphans) {
-    const int descriptor = ::open(orphan.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    if (descriptor < 0) continue;
+    constexpr int kFlags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+    const FileDescriptor folder(::open(orphan.c_str(), kFlags));
+    if (!folder) continue;
     std::error_code ignored;
     struct stat mark {};
-    const bool ours = ::fstatat(descriptor, kScratchMark, &mark, AT_SYMLINK_NOFOLLOW) == 0;
-    if (ours && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(orphan, ignored);
-    ::close(descriptor);
+    const bool ours = ::fstatat(folder.get(), kScratchMark, &mark, AT_SYMLINK_NOFOLLOW) == 0;
+    if (ours && ::flock(folder.get(), LOCK_EX | LOCK_NB) == 0) fs::remove_all(orphan, ignored);
   }
 }
 
@@ -59,16 +59,16 @@ ScratchFolder::ScratchFolder() {
   std::string name = (parent / kScratchPrefix).string() + "XXXXXX";
   if (::mkdtemp(name.data()) == nullptr) failOn(parent, "make a temporary folder in", errno);
   path_ = name;
-  descriptor_ = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0) return;
-  ::flock(descriptor_, LOCK_EX | LOCK_NB);
-  ::close(::openat(descriptor_, kScratchMark, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  descriptor_ = FileDescriptor(::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor_) return;
+  ::flock(descriptor_.get(), LOCK_EX | LOCK_NB);
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC;
+  const FileDescriptor mark(::openat(descriptor_.get(), kScratchMark, kFlags, 0644));
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace cdiff::core

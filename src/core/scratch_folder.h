@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "core/file_descriptor.h"
+
 namespace cdiff::core {
 
 /// A temporary folder of this process below TMPDIR, removed with the object. The first one of a
@@ -19,7 +21,7 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
-  int descriptor_ = -1;  ///< of the folder; locked
+  FileDescriptor descriptor_;  ///< of the folder; locked
 };
 
 }  // namespace cdiff::core

@@ -86,6 +86,14 @@ std::string valueText(const BatchRun& run, const std::string& name, int decimals
   return found == run.record.measures.end() ? "–" : core::formatFixed(found->second, decimals);
 }
 
+/// The measures of each run that the page shows, with their decimals.
+std::vector<std::pair<const metrics::MeasureDefinition*, int>> shownMeasures() {
+  namespace known = metrics::known;
+  return {{&known::kRouteCompletion, 1},  {&known::kDrivingScore, 1},
+          {&known::kEgoCollisions, 0},    {&known::kCbvDecisions, 0},
+          {&known::kCbvEgoCollisions, 0}, {&known::kCbvMinimumDistance, 1}};
+}
+
 void addRow(const BatchRun& run, page::HtmlTable& table) {
   const RunRecord& record = run.record;
   const bool has_report = std::filesystem::exists(run.folder / "report.html");
@@ -94,12 +102,8 @@ void addRow(const BatchRun& run, page::HtmlTable& table) {
       record.status + (record.complete() ? ", " + record::wordOf(record.verdict) : "");
   std::vector<Markup> cells = {
       has_report ? element("a", {{"href", link}}, record.id) : Markup(record.id), status};
-  namespace known = metrics::known;
-  const std::pair<const char*, int> shown[] = {
-      {known::kRouteCompletion.name, 1},  {known::kDrivingScore.name, 1},
-      {known::kEgoCollisions.name, 0},    {known::kCbvDecisions.name, 0},
-      {known::kCbvEgoCollisions.name, 0}, {known::kCbvMinimumDistance.name, 1}};
-  for (const auto& [key, decimals] : shown) cells.emplace_back(valueText(run, key, decimals));
+  for (const auto& [measure, decimals] : shownMeasures())
+    cells.emplace_back(valueText(run, measure->name, decimals));
   cells.emplace_back(record.complete() ? core::joinText(record.reasons, "; ") : record.cause);
   table.row(cells, record::toText(outcomeOf(record)));
 }
@@ -110,9 +114,14 @@ Markup runTable(const std::vector<BatchRun>& runs) {
   std::stable_sort(order.begin(), order.end(), [](const BatchRun* left, const BatchRun* right) {
     return rankOf(left->record) < rankOf(right->record);
   });
-  page::HtmlTable table({"run", "status", "#route completion [%]", "#driving score",
-                         "#ego collisions", "#CBV decisions", "#CBV contacts with the ego",
-                         "#smallest distance of any CBV to the ego, centers [m]", "why"});
+  std::vector<std::string> head = {"Run", "Status"};
+  for (const auto& [measure, decimals] : shownMeasures()) {
+    const bool has_unit = decimals > 0 && *measure->unit != '\0';
+    head.push_back("#" + std::string(measure->label) +
+                   (has_unit ? " [" + std::string(measure->unit) + "]" : ""));
+  }
+  head.emplace_back("Why");
+  page::HtmlTable table(head);
   for (const BatchRun* run : order) addRow(*run, table);
   return table.html();
 }

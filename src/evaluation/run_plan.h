@@ -14,6 +14,8 @@
 
 namespace cdiff::evaluation {
 
+// The runs of a matrix before they are run, and hashes of all that their measures depend on.
+
 /// SHA-256 by name: "network", "demand", "route_file", "speed_target", "ego_weights", "cbv_weights"
 /// (where the scenario has them) and "program".
 using InputHashes = std::map<std::string, std::string>;

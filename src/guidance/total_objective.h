@@ -11,6 +11,8 @@
 
 namespace cdiff::guidance {
 
+// The weighted sum of the objectives, which guidance minimizes, and the score that ranks plans.
+
 /// For ranking samples: fewer undefined objectives first, then fewer rows off the road, then the
 /// lower value.
 struct Score {

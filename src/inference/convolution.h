@@ -13,6 +13,8 @@
 
 namespace cdiff::inference {
 
+// Convolutions over time at run time, and the padded float32 memory that layers work on.
+
 /// Floats aligned to a cache line, initially zero.
 class AlignedFloats {
  public:

@@ -16,6 +16,8 @@
 
 namespace cdiff::learning {
 
+// Runs one stage of a training from its first or a stored step to its end.
+
 /// A loss or a weight stopped being finite. `cdiff train` exits with 2.
 class DivergedError : public core::Error {
  public:

@@ -2,9 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "learning/task.h"
 
-#include <algorithm>
-
-#include "core/spelling.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/task_registry.h"
 
@@ -43,38 +40,19 @@ std::vector<std::string> OneStageTask::fields() const {
 }
 
 void TaskRegistry::add(const TaskDescriptor& descriptor) {
-  const std::string who = "training task '" + descriptor.name + "'";
-  if (descriptor.name.empty() || descriptor.make == nullptr) {
-    throw InputError(who + " is registered without " + (descriptor.name.empty() ? "name" : "make") +
-                     "; its descriptor in planners/NAME/training must give one");
-  }
-  const std::vector<std::string> known = names();
-  if (std::find(known.begin(), known.end(), descriptor.name) != known.end()) {
-    throw InputError(who +
-                     " is registered twice; one of the two planners must give its "
-                     "descriptor another name");
-  }
-  tasks_.push_back(descriptor);
-}
-
-std::vector<std::string> TaskRegistry::names() const {
-  std::vector<std::string> names;
-  for (const TaskDescriptor& task : tasks_) names.push_back(task.name);
-  return names;
+  const std::string source = "a descriptor in planners/NAME/training";
+  if (descriptor.make == nullptr)
+    throw InputError(source + ": training task '" + descriptor.name + "' has no constructor");
+  tasks_.add(descriptor, source);
 }
 
 const TaskDescriptor& TaskRegistry::descriptor(const std::string& name) const {
-  if (tasks_.empty()) {
+  if (tasks_.entries().empty()) {
     throw InputError(
         "no training task is registered; the program that trains must add the descriptors of "
         "planners/NAME/training");
   }
-  if (name.empty()) return tasks_.front();
-  for (const TaskDescriptor& task : tasks_) {
-    if (task.name == name) return task;
-  }
-  throw InputError("unknown training task '" + name + "'; the nearest known task is '" +
-                   core::nearestName(name, names()) + "'");
+  return name.empty() ? tasks_.entries().front() : tasks_.at(name);
 }
 
 Training TaskRegistry::training(const std::string& name) const {

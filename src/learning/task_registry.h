@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/registry.h"
 #include "learning/training_options.h"
 
 namespace cdiff::learning {
@@ -20,10 +21,10 @@ struct TaskDescriptor {
 /// The table of what can be trained. The program that trains fills it from the list of planners.
 class TaskRegistry {
  public:
-  /// Throws InputError naming the planner's folder that must change: no name, no constructor, a
-  /// name that another task has.
+  /// Throws InputError naming the planner's folder that must change: no constructor, a name that
+  /// is not snake_case or that another task has.
   void add(const TaskDescriptor& descriptor);
-  std::vector<std::string> names() const;
+  std::vector<std::string> names() const { return tasks_.names(); }
   /// The task of this name; an empty name means the first of the table. Throws InputError naming
   /// the nearest known task for an unknown name, and for an empty table.
   const TaskDescriptor& descriptor(const std::string& name) const;
@@ -32,7 +33,7 @@ class TaskRegistry {
   Training training(const std::string& name = "") const;
 
  private:
-  std::vector<TaskDescriptor> tasks_;
+  core::Registry<TaskDescriptor> tasks_{"training task", {}};
 };
 
 }  // namespace cdiff::learning

@@ -12,6 +12,8 @@
 
 namespace cdiff::map {
 
+// Shortest routes from lane to lane.
+
 /// A place on a lane.
 struct LanePosition {
   LaneIndex lane = kNoLane;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/formulas/quantiles.h"
 #include "metrics/formulas/sample_statistics.h"
 #include "metrics/known_measures.h"
 
@@ -104,8 +106,11 @@ class CbvEdgeDistance final : public Metric {
   }
   void report(MetricSink& sink) const override {
     sink.set(kEdgeDistanceMean, measureOrReason(mean_.mean(), mean_.count(), kNoCbv));
-    sink.set(kEdgeDistanceQuantile,
-             measureOrReason(quantileOf(distances_, 0.05), distances_.size(), kNoCbv));
+    std::vector<double> sorted = distances_;
+    std::sort(sorted.begin(), sorted.end());
+    if (sorted.empty()) return sink.set(kEdgeDistanceQuantile, absentMeasure(kNoCbv));
+    const double quantile = quantileOf(sorted, 0.05, QuantileRule::kLinear);
+    sink.set(kEdgeDistanceQuantile, {quantile, sorted.size(), {}, {}});
   }
 
  private:

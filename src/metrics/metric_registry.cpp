@@ -25,11 +25,13 @@ class Registry {
     for (MeasureDefinition& definition : descriptor.measures) {
       if (*definition.place == '\0') definition.place = defaultPlace(definition);
     }
-    for (const MeasureDefinition& definition : descriptor.measures) insert(definition);
-    metrics_.push_back(std::move(descriptor));
+    const std::string source = descriptor.source;
+    const std::vector<MeasureDefinition> measures = descriptor.measures;
+    metrics_.add(std::move(descriptor), source);
+    for (const MeasureDefinition& definition : measures) insert(definition);
   }
 
-  const std::deque<MetricDescriptor>& metrics() const { return metrics_; }
+  const std::deque<MetricDescriptor>& metrics() const { return metrics_.entries(); }
   const std::vector<MeasureDefinition>& measures() const { return measures_; }
 
  private:
@@ -74,14 +76,14 @@ class Registry {
   }
 
   void check(const MetricDescriptor& descriptor) const {
-    if (descriptor.name.empty() || descriptor.measures.empty() || !descriptor.make) {
+    if (descriptor.measures.empty() || !descriptor.make) {
       throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +
-                             " lacks a name, measures or 'make'");
+                             " lacks measures or 'make'");
     }
     for (const MeasureDefinition& definition : descriptor.measures)
       checkMeasure(definition, descriptor);
-    for (const MetricDescriptor& other : metrics_) {
-      if (other.name == descriptor.name) refuse("metric '" + other.name + "'", other, descriptor);
+    for (const MetricDescriptor& other : metrics()) {
+      if (other.name == descriptor.name) continue;  // metrics_ refuses it
       for (const MeasureDefinition& known : other.measures) {
         for (const MeasureDefinition& definition : descriptor.measures) {
           if (std::string(known.name) == definition.name ||
@@ -99,7 +101,7 @@ class Registry {
                            "')");
   }
 
-  std::deque<MetricDescriptor> metrics_;
+  core::Registry<MetricDescriptor> metrics_{"metric", {}};
   std::vector<MeasureDefinition> measures_;
   std::deque<std::string> places_;  ///< texts of places that were filled in
 };
@@ -229,6 +231,20 @@ std::string poolingText(const MeasureDefinition& definition) {
   if (std::isfinite(rule.least) && std::isfinite(rule.most))
     text += ", " + core::formatNumber(rule.least) + " to " + core::formatNumber(rule.most);
   return text;
+}
+
+std::string measureList() {
+  std::string list;
+  for (const MeasureDefinition& definition : measureDefinitions()) {
+    const std::string unit = *definition.unit ? definition.unit : "without unit";
+    list += "### `" + std::string(definition.name) + "`\n\n" + definition.label + "; " + unit +
+            "; " + toText(definition.subject) + "; " + toText(definition.direction) + "; " +
+            poolingText(definition) + "; `" + definition.place + "`\n\n" + definition.definition +
+            "\n\n";
+    if (*definition.rift_compat)
+      list += "rift_compat: " + std::string(definition.rift_compat) + "\n\n";
+  }
+  return list;
 }
 
 }  // namespace cdiff::metrics

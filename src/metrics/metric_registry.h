@@ -43,4 +43,9 @@ const char* toText(Pooling kind);
 /// For people: "share of samples, 0 to 100", "count, per km of the ego".
 std::string poolingText(const MeasureDefinition& definition);
 
+/// All measures as Markdown, for docs/metrics.md and `cdiff metric definitions`: a section for
+/// each, in the order of summary.json, with name, label, unit, subject, direction, pooling, place,
+/// definition and how RIFT's code differs.
+std::string measureList();
+
 }  // namespace cdiff::metrics

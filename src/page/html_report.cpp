@@ -85,9 +85,12 @@ Markup tile(const std::string& name, const std::string& value, const std::string
          "\n";
 }
 
-Markup tile(const std::string& name, const metrics::Measure& measure, int decimals) {
-  if (!measure.value) return tile(name, "–", "", measure.reason);
-  return tile(name, core::formatFixed(*measure.value, decimals), measure.unit,
+Markup tile(const metrics::MeasureDefinition& definition,
+            const metrics::SessionMeasures& measures) {
+  constexpr int kDecimals = 2;
+  const metrics::Measure measure = measures.at(definition);
+  if (!measure.value) return tile(definition.label, "–", "", measure.reason);
+  return tile(definition.label, core::formatFixed(*measure.value, kDecimals), measure.unit,
               "n = " + std::to_string(measure.n));
 }
 
@@ -99,11 +102,14 @@ std::string paceText(const record::SessionResult& result) {
 Markup egoTiles(const record::SessionResult& result) {
   namespace known = metrics::known;
   const metrics::SessionMeasures& measures = result.measures;
-  return tile("Route completion", core::formatFixed(measures.number(known::kRouteCompletion), 1),
-              "%", traffic::toText(result.status)) +
-         tile("Driving score", core::formatFixed(measures.number(known::kDrivingScore), 1), "",
+  return tile(known::kRouteCompletion.label,
+              core::formatFixed(measures.number(known::kRouteCompletion), 1), "%",
+              traffic::toText(result.status)) +
+         tile(known::kDrivingScore.label,
+              core::formatFixed(measures.number(known::kDrivingScore), 1), "",
               "of 100, by " + measures.protocol) +
-         tile("Ego collisions", std::to_string(measures.count(known::kEgoCollisions)), "",
+         tile(known::kEgoCollisions.label, std::to_string(measures.count(known::kEgoCollisions)),
+              "",
               std::to_string(measures.count(known::kContactsAtFault)) + " its fault, " +
                   std::to_string(measures.count(known::kCbvEgoCollisions)) + " with CBVs, " +
                   std::to_string(measures.count(known::kEgoAvoidable)) + " avoidable");
@@ -112,20 +118,19 @@ Markup egoTiles(const record::SessionResult& result) {
 Markup cbvTiles(const metrics::SessionMeasures& measures) {
   namespace known = metrics::known;
   const metrics::Measure rate = measures.at(known::kCollisionsPerKm);
-  return tile("CBVs", std::to_string(measures.count(known::kCbvCount)), "",
+  return tile(known::kCbvCount.label, std::to_string(measures.count(known::kCbvCount)), "",
               std::to_string(measures.count(known::kCbvDecisions)) + " decisions, " +
                   core::formatFixed(measures.number(known::kCbvDistance), 0) + " m") +
-         tile("CBV collisions", std::to_string(measures.count(known::kCbvCollisions)), "",
-              rate.value ? core::formatFixed(*rate.value, 2) + " per km" : rate.reason) +
-         tile("CBV off-road rate", measures.at(known::kCbvOffRoad), 2);
+         tile(known::kCbvCollisions.label, std::to_string(measures.count(known::kCbvCollisions)),
+              "", rate.value ? core::formatFixed(*rate.value, 2) + " per km" : rate.reason) +
+         tile(known::kCbvOffRoad, measures);
 }
 
 Markup tiles(const record::SessionResult& result) {
   const metrics::SessionMeasures& measures = result.measures;
   const Markup content =
-      egoTiles(result) + cbvTiles(measures) +
-      tile("2D-TTC, minimum", measures.at(metrics::known::kTtcMinimum), 2) +
-      tile("2D-TTC, mean", measures.at(metrics::known::kTtcMean), 2) +
+      egoTiles(result) + cbvTiles(measures) + tile(metrics::known::kTtcMinimum, measures) +
+      tile(metrics::known::kTtcMean, measures) +
       tile("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", paceText(result));
   return element("div", {{"class", "figures"}}, "\n" + content) + "\n";
 }

@@ -12,7 +12,7 @@
 #include "page/page_parts.h"
 #include "page/pictures/attention.h"
 #include "page/pictures/map_canvas.h"
-#include "page/pictures/perceived.h"
+#include "page/pictures/perception.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/cbv_log.h"
 

@@ -13,7 +13,8 @@ double extendedProjection(const map::Route& route, const Eigen::Vector2d& positi
 
 /// Where a vehicle is on its route: arc length [m] that only grows, found near the one before, so
 /// that a route that crosses itself or comes back is followed in order. Before its start and beyond
-/// its end the route goes straight on.
+/// its end the route goes straight on. (Completion by a protocol's rule: map::RouteProgress, which
+/// starts at the route's begin; a path that may be left and found again: cbv::advancedArcLength.)
 /// Holds no reference: the route is given at each call and may be another object with the same
 /// content.
 class RouteFollower {

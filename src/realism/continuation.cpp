@@ -12,8 +12,8 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
-#include "realism/course_recorder.h"
 #include "realism/recording.h"
+#include "realism/recording_builder.h"
 #include "session/closed_loop.h"
 
 namespace cdiff::realism {

@@ -8,8 +8,8 @@
 #include "core/text.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "page/page_parts.h"
-#include "realism/matched.h"
-#include "realism/pooled.h"
+#include "realism/matched_realism.h"
+#include "realism/pooled_realism.h"
 
 namespace cdiff::realism {
 namespace {

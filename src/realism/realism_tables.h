@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "realism/matched.h"
-#include "realism/pooled.h"
+#include "realism/matched_realism.h"
+#include "realism/pooled_realism.h"
 
 namespace cdiff::realism {
 

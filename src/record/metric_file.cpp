@@ -14,7 +14,6 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/formulas/distributions.h"
 #include "metrics/formulas/ttc_2d.h"
-#include "metrics/metric_registry.h"
 
 namespace cdiff::record {
 namespace {
@@ -166,20 +165,6 @@ std::vector<std::string> evaluateMetricFile(const std::string& metric, const std
   throw core::InputError("unknown metric \"" + metric +
                          "\", expected ttc_2d, shapiro_wilk or wasserstein; nearest: " +
                          core::nearestName(metric, {"ttc_2d", "shapiro_wilk", "wasserstein"}));
-}
-
-std::string measureList() {
-  std::string list;
-  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
-    const std::string unit = *definition.unit ? definition.unit : "without unit";
-    list += "### `" + std::string(definition.name) + "`\n\n" + definition.label + "; " + unit +
-            "; " + metrics::toText(definition.subject) + "; " +
-            metrics::toText(definition.direction) + "; " + metrics::poolingText(definition) +
-            "; `" + definition.place + "`\n\n" + definition.definition + "\n\n";
-    if (*definition.rift_compat)
-      list += "rift_compat: " + std::string(definition.rift_compat) + "\n\n";
-  }
-  return list;
 }
 
 }  // namespace cdiff::record

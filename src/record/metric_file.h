@@ -20,11 +20,4 @@ namespace cdiff::record {
 /// Throws InputError naming the file, the line or case, and what was expected.
 std::vector<std::string> evaluateMetricFile(const std::string& metric, const std::string& file);
 
-// The table of a session's measures as Markdown, for docs/metrics.md and `cdiff metric
-// definitions`.
-
-/// One section per measure, in the order of summary.json: name, label, unit, subject, direction,
-/// place, definition and how RIFT's code differs.
-std::string measureList();
-
 }  // namespace cdiff::record

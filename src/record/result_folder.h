@@ -16,6 +16,8 @@
 
 namespace cdiff::record {
 
+// The result folder of a session, and its trace.csv.
+
 /// First line of the trace.
 inline constexpr const char* kTraceHeader = "tick,id,role,x,y,heading,speed,throttle,steer,brake\n";
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_selector.h"
 #include "core/markup.h"
 #include "core/text.h"

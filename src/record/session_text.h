@@ -10,8 +10,8 @@
 
 namespace cdiff::record {
 
-// The fixed words of CBV identification (cbv/candidates.h, cbv/cbv_selector.h) as sentences for
-// people.
+// The fixed words of CBV identification (cbv/candidate_gates.h, cbv/cbv_selector.h) as sentences
+// for people.
 
 /// Why a candidate was not taken; the word itself when it is not known.
 std::string rejectionText(const std::string& reason);

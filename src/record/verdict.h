@@ -12,6 +12,8 @@
 
 namespace cdiff::record {
 
+// Whether a session passed, by the rules of its scenario.
+
 /// One rule of the scenario, or the session itself (name "session").
 struct Check {
   std::string name;

@@ -16,6 +16,8 @@
 
 namespace cdiff::rendering {
 
+// A software rasterizer: a view, what can be painted, and the canvas that is painted on.
+
 /// Nothing nearer than this is drawn [m].
 constexpr double kNearPlane = 0.25;
 

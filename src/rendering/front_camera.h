@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <optional>
-
 #include "e2e_cdiff/map/road_network.h"
 #include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
@@ -22,13 +20,6 @@ class FrontCamera {
   /// are distinguished from it by id.
   traffic::CameraImage render(const traffic::TrafficSnapshot& snapshot,
                               const traffic::Vehicle& vehicle);
-
-  /// Pixel (sub-pixel coordinates) of a point of the map frame seen from `vehicle`; nullopt when it
-  /// lies behind the near plane. The road below the vehicle has the vehicle's elevation.
-  std::optional<Eigen::Vector2d> project(const traffic::Vehicle& vehicle,
-                                         const Eigen::Vector3d& point) const {
-    return renderer_.project(0, vehicle, point);
-  }
   const CameraOptions& options() const { return options_; }
 
  private:

@@ -20,7 +20,6 @@ enum class SceneClass : std::uint8_t {
   kSignal,   ///< traffic lights with their masts
   kVehicle
 };
-inline constexpr int kSceneClasses = 8;
 
 /// Whether labels are rendered beside the picture.
 enum class Labels { kNone, kClassesAndInstances };

@@ -117,17 +117,6 @@ std::vector<RenderedView> RigRenderer::render(const traffic::TrafficSnapshot& sn
   return views;
 }
 
-std::optional<Eigen::Vector2d> RigRenderer::project(std::size_t camera,
-                                                    const traffic::Vehicle& vehicle,
-                                                    const Eigen::Vector3d& point) const {
-  const RigCamera& of_rig = parts_->rig.cameras.at(camera);
-  const Eigen::Vector3d at = View(of_rig, parts_->rig.far_distance, vehicle).toCamera(point);
-  if (at.z() < kNearPlane) return std::nullopt;
-  const Intrinsics intrinsics = intrinsicsOf(of_rig);
-  return Eigen::Vector2d(intrinsics.focal_length * at.x() / at.z() + intrinsics.center_x,
-                         intrinsics.focal_length * at.y() / at.z() + intrinsics.center_y);
-}
-
 const CameraRig& RigRenderer::rig() const { return parts_->rig; }
 
 std::vector<int> mostPixels(const std::vector<RenderedView>& views, std::size_t vehicles) {

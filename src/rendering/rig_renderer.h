@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "e2e_cdiff/map/road_network.h"
@@ -35,11 +34,6 @@ class RigRenderer {
   std::vector<RenderedView> render(const traffic::TrafficSnapshot& snapshot,
                                    const traffic::Vehicle& vehicle, Labels labels = Labels::kNone);
 
-  /// Pixel (sub-pixel coordinates) of a point of the map frame in the image of the camera of this
-  /// index, seen from `vehicle`; nullopt when it lies behind the near plane. The road below the
-  /// vehicle has the vehicle's elevation.
-  std::optional<Eigen::Vector2d> project(std::size_t camera, const traffic::Vehicle& vehicle,
-                                         const Eigen::Vector3d& point) const;
   const CameraRig& rig() const;
 
  private:

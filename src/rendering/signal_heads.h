@@ -12,6 +12,8 @@
 
 namespace cdiff::rendering {
 
+// Traffic lights in the images of cameras.
+
 /// The color of a lit lamp of a traffic light; kDark where none is lit.
 enum class LampColor { kDark, kRed, kYellow, kGreen };
 

@@ -14,6 +14,8 @@
 
 namespace cdiff::session {
 
+// The decision cycle of a session in one process.
+
 /// One process asks its planners one after the other, so no answer can be late: throws InputError
 /// for options with a real-time factor.
 void requireLockstep(const ScenarioOptions& options);

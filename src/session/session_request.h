@@ -11,6 +11,8 @@
 
 namespace cdiff::session {
 
+// A request for a session, and how it is resolved to one scenario.
+
 /// How planners that sample and are guided work unless a scenario says otherwise: a preset below
 /// all single keys. Methods are YAML files of it in config/methods: `paper` is the published
 /// method, `default` what the package recommends.

@@ -29,9 +29,6 @@ class SessionSetup {
   SessionSetup& operator=(const SessionSetup&) = delete;
 
   const ScenarioOptions& options() const { return options_; }
-  /// Makes it the setup of the same session from another root seed. No world, planner or selector
-  /// made of it may be in use.
-  void reseed(std::int64_t seed) { options_.seed = seed; }
   const map::ImportedNetwork& import() const { return import_; }
   const map::RoadNetwork& network() const { return network_; }
   const map::LaneGraph& graph() const { return graph_; }

@@ -15,6 +15,8 @@
 
 namespace cdiff::session {
 
+// What a session drives in: traffic, driven vehicles, hand-over, contacts.
+
 /// The vehicles around the ego that the simulator drives: as many as the scenario's generated
 /// demand asks for, none where the ego starts (map frame, SI units).
 class BackgroundTraffic {

@@ -12,6 +12,8 @@
 
 namespace cdiff::simulation {
 
+// The vehicles in SUMO that we move.
+
 /// How a released vehicle gets from where it was to where SUMO has it, in the middle of its lane
 /// and aligned: front bumper at SUMO's + a along + d to the left, heading SUMO's + e. Per meter
 /// driven d' = sin e, e' = -d / L^2 - 2 e / L (critically damped, |e'| <= 0.2 / m), a' = -a / L, L

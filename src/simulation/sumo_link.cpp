@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/file.h"
+#include "core/file_descriptor.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -88,15 +89,14 @@ std::string lastLines(const fs::path& path) {
 }  // namespace
 
 int freePort() {
-  const int handle = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const core::FileDescriptor handle(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_ANY);
   socklen_t size = sizeof(address);
-  const bool bound = handle >= 0 &&
-                     ::bind(handle, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-                     ::getsockname(handle, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-  if (handle >= 0) ::close(handle);
+  const bool bound = handle &&
+                     ::bind(handle.get(), reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+                     ::getsockname(handle.get(), reinterpret_cast<sockaddr*>(&address), &size) == 0;
   if (!bound) throw core::SimulatorError("no free TCP port was found for SUMO");
   return ntohs(address.sin_port);
 }

@@ -18,6 +18,8 @@
 
 namespace cdiff::simulation {
 
+// SUMO as a process, and the TraCI connection to it.
+
 /// A TCP port that was free a moment ago.
 int freePort();
 

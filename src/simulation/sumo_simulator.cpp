@@ -11,8 +11,8 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/driven_fleet.h"
-#include "simulation/sumo_input.h"
 #include "simulation/sumo_link.h"
+#include "simulation/sumo_start.h"
 #include "simulation/traffic_observer.h"
 #include "simulation/traffic_simulator.h"
 

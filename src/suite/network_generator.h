@@ -12,6 +12,8 @@
 
 namespace cdiff::suite {
 
+// Road networks that are drawn at random, as sources of netconvert.
+
 /// Draws one after the other from one key of a counter-based stream: the same stream and counter
 /// give the same series.
 class Draws {

@@ -80,24 +80,20 @@ void VideoEncoder::start(const VideoFormat& format) {
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     throw core::SimulatorError("video '" + file_.string() + "': " + std::strerror(errno));
   }
-  input_ = ends[0];
-  ::setsockopt(input_, SOL_SOCKET, SO_SNDTIMEO, &kLongestPause, sizeof(kLongestPause));
-  try {
-    process_ = std::make_unique<core::GuardedProcess>(
-        program, commandLine(format, folder_.claim(partName())),
-        core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
-        core::ProcessStreams{{}, ends[1], messages_.descriptor()});
-  } catch (...) {
-    ::close(ends[1]);
-    throw;
-  }
-  ::close(ends[1]);
+  input_ = core::FileDescriptor(ends[0]);
+  const core::FileDescriptor output(ends[1]);
+  ::setsockopt(input_.get(), SOL_SOCKET, SO_SNDTIMEO, &kLongestPause, sizeof(kLongestPause));
+  process_ = std::make_unique<core::GuardedProcess>(
+      program, commandLine(format, folder_.claim(partName())),
+      core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
+      core::ProcessStreams{{}, output.get(), messages_.descriptor()});
 }
 
 void VideoEncoder::write(const std::vector<std::uint8_t>& frame) {
   std::size_t sent = 0;
   while (sent < frame.size()) {
-    const ssize_t count = ::send(input_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
+    const ssize_t count =
+        ::send(input_.get(), frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
     if (count > 0) {
       sent += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {
@@ -107,25 +103,18 @@ void VideoEncoder::write(const std::vector<std::uint8_t>& frame) {
 }
 
 void VideoEncoder::finish() {
-  closeInput();
+  input_.close();
   const int code = wait();
   if (code != 0) fail("exit code " + std::to_string(code));
   // It exits with 0 when the disk filled up at the very end.
   if (!lastWords(messages_).empty()) fail("it complained");
   const fs::path part = folder_.path() / partName();
-  const int descriptor = ::open(part.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!on_disk) fail(std::strerror(errno));
+  const core::FileDescriptor written(::open(part.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!written || ::fsync(written.get()) != 0) fail(std::strerror(errno));
   std::error_code error;
   fs::rename(part, folder_.claim(name_), error);
   if (error) fail(error.message());
   folder_.remove({partName()});
-}
-
-void VideoEncoder::closeInput() {
-  if (input_ >= 0) ::close(input_);
-  input_ = -1;
 }
 
 int VideoEncoder::wait() {
@@ -134,7 +123,7 @@ int VideoEncoder::wait() {
 }
 
 void VideoEncoder::stop() {
-  closeInput();
+  input_.close();
   process_.reset();
   try {
     folder_.remove({partName()});
@@ -144,7 +133,7 @@ void VideoEncoder::stop() {
 }
 
 void VideoEncoder::fail(const std::string& text) {
-  closeInput();
+  input_.close();
   if (process_) wait();
   const std::string words = lastWords(messages_);
   stop();

@@ -15,6 +15,8 @@
 
 namespace cdiff::video {
 
+// The video of a session, written through ffmpeg while it runs.
+
 /// Size [pixels] and frame rate [1/s] of a video.
 struct VideoFormat {
   int width = 0;   ///< [pixels], even
@@ -45,7 +47,6 @@ class VideoEncoder {
 
  private:
   void start(const VideoFormat& format);
-  void closeInput();
   /// Exit code, 128 + signal where one ended it; kills the program after 60 s.
   int wait();
   void stop();
@@ -57,7 +58,7 @@ class VideoEncoder {
   std::string name_;
   std::filesystem::path file_;
   std::unique_ptr<core::GuardedProcess> process_;
-  int input_ = -1;                ///< our end of the socket
+  core::FileDescriptor input_;    ///< our end of the socket
   core::ProcessOutput messages_;  ///< error output of the program
 };
 

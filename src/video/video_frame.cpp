@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "metrics/formulas/ttc_2d.h"
 #include "record/session_text.h"
-#include "video/video_ink.h"
+#include "video/video_highlights.h"
 
 namespace cdiff::video {
 namespace {

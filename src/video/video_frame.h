@@ -12,7 +12,7 @@
 #include "rendering/front_camera.h"
 #include "session/session_observer.h"
 #include "session/session_setup.h"
-#include "video/video_ink.h"
+#include "video/video_highlights.h"
 #include "video/video_map.h"
 
 namespace cdiff::video {

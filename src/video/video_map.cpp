@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "video/video_ink.h"
+#include "video/video_highlights.h"
 
 namespace cdiff::video {
 namespace {

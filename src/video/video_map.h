@@ -12,7 +12,7 @@
 #include "page/pictures/map_canvas.h"
 #include "session/session_observer.h"
 #include "session/session_setup.h"
-#include "video/video_ink.h"
+#include "video/video_highlights.h"
 
 namespace cdiff::video {
 

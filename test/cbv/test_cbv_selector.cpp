@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_selector.h"
 #include "cbv/crossing_world.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -3,7 +3,7 @@
 // How long a CBV keeps its slot, in both life cycles.
 #include <gtest/gtest.h>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_options.h"
 #include "cbv/crossing_world.h"
 

@@ -7,7 +7,7 @@
 
 #include "collection/collection_loop.h"
 #include "collection/collection_options.h"
-#include "collection/offset_samples.h"
+#include "collection/displaced_samples.h"
 #include "collection/traffic_driver.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "support/network_text.h"

@@ -24,6 +24,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "support/error_text.h"
 #include "support/real_data.h"
 #include "support/temporary_folder.h"
 
@@ -97,15 +98,7 @@ TEST(Text, OnlyACloseNameIsSuggested) {
   EXPECT_EQ(shortened("abc", 3), "abc");
 }
 
-/// The text of the InputError that an action throws.
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::errorOf;
 
 TEST(File, WhatTheSystemRefusesIsNamed) {
   const test::TemporaryFolder folder;

@@ -11,6 +11,7 @@
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/run_records.h"
+#include "support/error_text.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -130,14 +131,7 @@ TEST(Comparison, BelievesOverDispersedCountsLess) {
   EXPECT_DOUBLE_EQ(contacts.p, 1.0);
 }
 
-std::string refusalOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
+using test::errorOf;
 
 RunSet drivenBy(const std::string& name, const std::string& suite, const std::string& time_limit) {
   RunSet set{name, {recordWith({"s", "1"}, 10)}};
@@ -150,8 +144,8 @@ RunSet drivenBy(const std::string& name, const std::string& suite, const std::st
 
 TEST(Comparison, RefusesOtherProtocols) {
   const RunSet a = drivenBy("A", "test", "40");
-  EXPECT_EQ(refusalOf([&] { requireComparable(a, drivenBy("B", "test", "40")); }), "");
-  const std::string refusal = refusalOf([&] {
+  EXPECT_EQ(errorOf([&] { requireComparable(a, drivenBy("B", "test", "40")); }), "no error");
+  const std::string refusal = errorOf([&] {
     compareRuns(a, drivenBy("B", "test", "60"), {"scenario", "seed"}, {});
   });
   for (const char* part : {"different protocols", "scenario 's'", "time_limit 40 in A and 60 in B",
@@ -160,7 +154,7 @@ TEST(Comparison, RefusesOtherProtocols) {
 }
 
 TEST(Comparison, RefusesOtherSuites) {
-  const std::string refusal = refusalOf(
+  const std::string refusal = errorOf(
       [] { requireComparable(drivenBy("A", "test", "40"), drivenBy("B", "sealed_a", "40")); });
   for (const char* part : {"other routes", "suite 'test' and suite 'sealed_a'", "Run one of them"})
     EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
@@ -171,9 +165,9 @@ TEST(Comparison, RefusesAScenarioWithAnotherNetwork) {
   RunSet b = drivenBy("B", "", "40");
   a.records[0].inputs = {{"network", "11"}, {"program", "1"}};
   b.records[0].inputs = {{"network", "11"}, {"program", "2"}};
-  EXPECT_EQ(refusalOf([&] { requireComparable(a, b); }), "");
+  EXPECT_EQ(errorOf([&] { requireComparable(a, b); }), "no error");
   b.records[0].inputs["network"] = "22";
-  EXPECT_NE(refusalOf([&] { requireComparable(a, b); }).find("its network is another file"),
+  EXPECT_NE(errorOf([&] { requireComparable(a, b); }).find("its network is another file"),
             std::string::npos);
 }
 

@@ -10,8 +10,8 @@
 #include "core/file.h"
 #include "e2e_cdiff/metrics/metric.h"
 #include "evaluation/run_record.h"
+#include "metrics/metric_registry.h"
 #include "page/result_writer.h"
-#include "record/metric_file.h"
 #include "record/seen_session.h"
 
 namespace cdiff::evaluation {
@@ -76,7 +76,7 @@ TEST(RegisteredMetric, IsInEveryFileOfSessionsAndBatches) {
   EXPECT_TRUE(summary["cbv"]["my_actions"].is_number_unsigned());
   const std::string report = core::readFile(scratch.path() / "report.html", "report");
   EXPECT_NE(report.find("Decisions that I count"), std::string::npos);
-  EXPECT_NE(record::measureList().find("### `my_actions`"), std::string::npos);
+  EXPECT_NE(metrics::measureList().find("### `my_actions`"), std::string::npos);
   const auto& columns = measureNames();  // of runs.csv
   EXPECT_EQ(std::count(columns.begin(), columns.end(), "my_decisions"), 1);
   EXPECT_EQ(readSummary(text, "summary.json").measures.at("my_decisions"), 61.0);

@@ -121,7 +121,7 @@ TEST(TunedTracker, IsWhatTheCommandFinds) {
 
 TEST(TuningTable, HasALinePerTrackerAndSet) {
   const TuningTracks tracks(TuningOptions{1, 1});
-  const auto rows = {judgeTracker(pdmLiteTracker(), tracks, dynamics::BicycleModel())};
+  const auto rows = {evaluateTracker(pdmLiteTracker(), tracks, dynamics::BicycleModel())};
   const std::string table = tuningTable(rows);
   EXPECT_NE(table.find("\n| pdm_lite | tuning | "), std::string::npos) << table;
   EXPECT_NE(table.find("\n| pdm_lite | held out | "), std::string::npos) << table;

@@ -5,19 +5,12 @@
 #include "learning/task.h"
 #include "learning/task_registry.h"
 #include "learning/toy_task.h"
+#include "support/error_text.h"
 
 namespace cdiff::learning {
 namespace {
 
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "taken";
-}
+using test::errorOf;
 
 TaskDescriptor named(const std::string& name) {
   TaskDescriptor descriptor = test::toyTraining();
@@ -39,27 +32,27 @@ TEST(TaskRegistry, MakesTheTaskThatIsAskedForAndElseTheFirst) {
 TEST(TaskRegistry, ATaskIsRegisteredOnceAndWhole) {
   TaskRegistry tasks;
   tasks.add(named("line"));
-  EXPECT_EQ(refusal([&] { tasks.add(named("line")); }),
-            "training task 'line' is registered twice; one of the two planners must give its "
-            "descriptor another name");
+  EXPECT_EQ(
+      errorOf([&] { tasks.add(named("line")); }),
+      "a descriptor in planners/NAME/training: training task 'line' is already registered by a "
+      "descriptor in planners/NAME/training; one of the two needs another name");
   TaskDescriptor half = named("half");
   half.make = nullptr;
-  EXPECT_EQ(refusal([&] { tasks.add(half); }),
-            "training task 'half' is registered without make; its descriptor in "
-            "planners/NAME/training must give one");
-  EXPECT_NE(refusal([&] { tasks.add(named("")); }).find("is registered without name"),
+  EXPECT_EQ(errorOf([&] { tasks.add(half); }),
+            "a descriptor in planners/NAME/training: training task 'half' has no constructor");
+  EXPECT_NE(errorOf([&] { tasks.add(named("")); }).find("its name must be snake_case"),
             std::string::npos);
   EXPECT_EQ(tasks.names(), std::vector<std::string>{"line"});
 }
 
 TEST(TaskRegistry, AnUnknownTaskIsNamedWithTheNearest) {
   TaskRegistry tasks;
-  EXPECT_NE(refusal([&] { tasks.training(); }).find("no training task is registered"),
+  EXPECT_NE(errorOf([&] { tasks.training(); }).find("no training task is registered"),
             std::string::npos);
   tasks.add(named("line"));
   tasks.add(named("curve"));
-  EXPECT_EQ(refusal([&] { tasks.training("curv"); }),
-            "unknown training task 'curv'; the nearest known task is 'curve'");
+  EXPECT_EQ(errorOf([&] { tasks.training("curv"); }),
+            "unknown training task 'curv'; the nearest known training task is 'curve'");
 }
 
 /// Names of the described options, in their order.

@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/map/road_network.h"
 #include "map/import/network_import.h"
+#include "support/error_text.h"
 #include "support/real_data.h"
 
 namespace cdiff::map {
@@ -20,14 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::errorOf;
 
 /// A folder of its own for inputs and for the cache.
 class NetworkImport : public ::testing::Test {

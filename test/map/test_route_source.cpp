@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <functional>
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "map/bench2drive_file.h"
 #include "map/route_source.h"
+#include "support/error_text.h"
 #include "support/network_text.h"
 #include "support/real_data.h"
 
@@ -35,14 +35,7 @@ test::NetworkText street() {
   return text;
 }
 
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::errorOf;
 
 #define EXPECT_ERROR(action, part)                               \
   do {                                                           \

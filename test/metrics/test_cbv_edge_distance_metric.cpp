@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/formulas/sample_statistics.h"
 #include "metrics/session_metrics.h"
 #include "metrics/straight_road.h"
 
@@ -42,15 +41,6 @@ TEST_F(CbvEdgeDistanceMetric, IsThatOfTheCornerFarthestOut) {
 TEST_F(CbvEdgeDistanceMetric, IsAbsentWithoutCbv) {
   EXPECT_EQ(at("cbv_edge_distance_mean_m").reason, "no CBV was driven");
   EXPECT_EQ(at("cbv_edge_distance_p5_m").reason, "no CBV was driven");
-}
-
-TEST(QuantileOf, IsLinearBetweenOrderStatistics) {
-  // numpy.quantile([4, 1, 3, 2], [0.05, 0.5, 1]) = [1.15, 2.5, 4].
-  EXPECT_NEAR(*quantileOf({4, 1, 3, 2}, 0.05), 1.15, 1e-12);
-  EXPECT_NEAR(*quantileOf({4, 1, 3, 2}, 0.5), 2.5, 1e-12);
-  EXPECT_EQ(*quantileOf({4, 1, 3, 2}, 1.0), 4.0);
-  EXPECT_EQ(*quantileOf({7}, 0.05), 7.0);
-  EXPECT_FALSE(quantileOf({}, 0.5).has_value());
 }
 
 }  // namespace

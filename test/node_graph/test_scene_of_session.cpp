@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collection/scene_recorder.h"
+#include "e2e_cdiff/core/options.h"
 #include "learning/samples/scene_file.h"
 #include "node_graph/bags/dataset_from_bag.h"
 #include "node_graph/recorded_bag.h"
@@ -11,6 +12,43 @@
 
 namespace cdiff::node_graph {
 namespace {
+
+std::unique_ptr<session::SessionSetup> setupOf(const learning::Scene& scene) {
+  session::ScenarioOptions options;
+  core::loadOptions({"scenario of scene '" + scene.name + "'", scene.scenario_yaml}, options);
+  map::ImportedNetwork import;
+  import.source = scene.network_source;
+  import.source_sha256 = scene.network_source_sha256;
+  import.text = scene.network_text;
+  return std::make_unique<session::SessionSetup>(options, std::move(import),
+                                                 scene.drives.front().route_points);
+}
+
+/// The session of a scene with the setup that it was driven in, without images.
+collection::DrivenSession drivenSession(const learning::Scene& scene) {
+  collection::DrivenSession session;
+  session.name = scene.name;
+  session.setup = setupOf(scene);
+  session.decisions = scene.decisions;
+  session.disturbed = scene.disturbed;
+  session.seconds = scene.seconds;
+  for (const learning::SceneDrive& drive : scene.drives) {
+    const bool ego = &drive == &scene.drives.front();
+    session.routes[{drive.vehicle_id, drive.selected_tick}] =
+        ego ? session.setup->egoRoute() : learning::routeOf(scene, drive, session.setup->network());
+  }
+  for (std::size_t i = 0; i < scene.driven.size(); ++i) {
+    for (const auto& [slot, number] : scene.driven[i]) {
+      const learning::SceneDrive& drive = scene.drives.at(number);
+      session.drives[scene.decisions.at(i).tick][slot] = {drive.vehicle_id, drive.selected_tick};
+    }
+  }
+  for (const auto& [tick, contact] : scene.contacts) {
+    session.contacts[contact.first].push_back(tick);
+    session.contacts[contact.second].push_back(tick);
+  }
+  return session;
+}
 
 /// One session of 6 s, recorded as a bag with images and as a scene, which is read from its bytes.
 class SceneOfSession : public testing::Test {
@@ -33,7 +71,7 @@ class SceneOfSession : public testing::Test {
 };
 
 TEST_F(SceneOfSession, ImagesRenderedFromItAreThoseOfTheSession) {
-  const collection::DrivenSession session = collection::drivenSession(scene_);
+  const collection::DrivenSession session = drivenSession(scene_);
   rendering::FrontCamera camera(session.setup->options().camera, session.setup->network());
   ASSERT_GT(recorded_->images.size(), 20U);
   std::map<std::uint64_t, const traffic::TrafficSnapshot*> by_tick;
@@ -50,7 +88,7 @@ TEST_F(SceneOfSession, ImagesRenderedFromItAreThoseOfTheSession) {
 }
 
 TEST_F(SceneOfSession, GivesTheSamplesOfItsBag) {
-  collection::DrivenSession session = collection::drivenSession(scene_);
+  collection::DrivenSession session = drivenSession(scene_);
   session.images = recorded_->images;
   collection::DatasetStatistics from_scene, from_bag;
   const auto samples = collection::samplesOf(session, {}, from_scene);

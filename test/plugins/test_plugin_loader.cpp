@@ -10,6 +10,7 @@
 #include "plugins/plugin_loader.h"
 #include "session/closed_loop.h"
 #include "session/scenario_options.h"
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::plugins {
@@ -21,18 +22,10 @@ PluginLibrary libraryOf(const std::string& kind) {
   return {fs::path(PLUGINS) / ("plugin_" + kind + ".so"), "the test"};
 }
 
-template <class Call>
-std::string messageOf(const Call& call) {
-  try {
-    call();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::errorOf;
 
 std::string refusalOf(const std::string& kind) {
-  return messageOf([&] { loadPlugin(libraryOf(kind)); });
+  return errorOf([&] { loadPlugin(libraryOf(kind)); });
 }
 
 void expectIn(const std::string& part, const std::string& text) {
@@ -84,7 +77,7 @@ TEST(PluginLoader, NamesWhatIsWrongAndWhoMustAct) {
   expectIn("exports no class of cdiff::plugins::Plugin", refusalOf("empty"));
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "text.so") << "no library";
-  expectIn("cannot be loaded", messageOf([&] {
+  expectIn("cannot be loaded", errorOf([&] {
              loadPlugin({folder.path() / "text.so", "the test"});
            }));
 }
@@ -138,13 +131,12 @@ TEST(PluginSearch, NamesALibraryThatIsNotThere) {
   {
     const Variable packages("ROS_PACKAGE_PATH", folder.path().string());
     writePackage(folder.path() / "mine", "lost.so");
-    const std::string text = messageOf([] { findPlugins(); });
+    const std::string text = errorOf([] { findPlugins(); });
     expectIn((folder.path() / "mine/package.xml").string(), text);
     expectIn("lost.so", text);
   }
   const Variable named("E2E_CDIFF_PLUGINS", "/nowhere/lib.so");
-  expectIn("E2E_CDIFF_PLUGINS names the plug-in '/nowhere/lib.so'",
-           messageOf([] { findPlugins(); }));
+  expectIn("E2E_CDIFF_PLUGINS names the plug-in '/nowhere/lib.so'", errorOf([] { findPlugins(); }));
 }
 
 }  // namespace

@@ -48,10 +48,5 @@ TEST(LateLog, CountsWhatCameLateOrNeverAndWhatDroveInstead) {
   EXPECT_EQ(latenessText({}), "");
 }
 
-TEST(LatencyLog, NearestRankReachesBothEnds) {
-  EXPECT_EQ(nearestRank({1.0, 2.0, 3.0}, 0.0), 1.0);
-  EXPECT_EQ(nearestRank({1.0, 2.0, 3.0}, 100.0), 3.0);
-}
-
 }  // namespace
 }  // namespace cdiff::record

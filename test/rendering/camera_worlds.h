@@ -4,8 +4,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
+#include "rendering/canvas.h"
 #include "rendering/front_camera.h"
 
 namespace cdiff::rendering {
@@ -31,6 +33,17 @@ inline traffic::Vehicle vehicleAt(const std::string& id, double x, double y, dou
   vehicle.state.heading = heading;
   vehicle.state.speed = 8.0;
   return vehicle;
+}
+
+/// Where a camera of `vehicle` shows a point of the map frame; nullopt behind the near plane.
+inline std::optional<Eigen::Vector2d> pixelOf(const RigCamera& camera,
+                                              const traffic::Vehicle& vehicle,
+                                              const Eigen::Vector3d& point) {
+  const Eigen::Vector3d at = View(camera, 90.0, vehicle).toCamera(point);
+  if (at.z() < kNearPlane) return std::nullopt;
+  const Intrinsics intrinsics = intrinsicsOf(camera);
+  return Eigen::Vector2d(intrinsics.focal_length * at.x() / at.z() + intrinsics.center_x,
+                         intrinsics.focal_length * at.y() / at.z() + intrinsics.center_y);
 }
 
 inline traffic::TrafficSnapshot snapshotOf(std::vector<traffic::Vehicle> vehicles) {

@@ -6,6 +6,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/rendering/camera_rig.h"
+#include "support/error_text.h"
 
 namespace cdiff::rendering {
 namespace {
@@ -18,15 +19,7 @@ RigOptions ownCamera(const RigCamera& camera) {
   return options;
 }
 
-template <class Call>
-std::string errorOf(const Call& call) {
-  try {
-    call();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::errorOf;
 
 std::string errorOf(const RigOptions& options) {
   return errorOf([&] { options.validate("ego_rig."); });

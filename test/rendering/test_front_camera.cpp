@@ -17,14 +17,14 @@ constexpr Pixel kGreen = {40, 240, 96};
 constexpr Pixel kUnlitRed = {70, 20, 20};
 
 TEST(FrontCamera, ProjectsPointsOfTheMap) {
-  const FrontCamera camera(levelCamera(), straightRoad());
+  const RigCamera camera = frontCamera(levelCamera());
   // Eye (0.5, 0, 1.4): depth 20, 2 m left, 1.4 m down: u = 79.5 - 80 * 2 / 20, v = 47.5 + 80 * 1.4
   // / 20.
-  const auto pixel = camera.project(vehicleAt("ego", 0.0, 0.0), {20.5, 2.0, 0.0});
+  const auto pixel = pixelOf(camera, vehicleAt("ego", 0.0, 0.0), {20.5, 2.0, 0.0});
   ASSERT_TRUE(pixel);
   EXPECT_NEAR(pixel->x(), 71.5, 1e-9);
   EXPECT_NEAR(pixel->y(), 53.1, 1e-9);
-  EXPECT_FALSE(camera.project(vehicleAt("ego", 0.0, 0.0), {-20.5, 2.0, 0.0}));
+  EXPECT_FALSE(pixelOf(camera, vehicleAt("ego", 0.0, 0.0), {-20.5, 2.0, 0.0}));
 }
 
 TEST(FrontCamera, ABlindOneShowsMidGrayAtItsTick) {
@@ -43,11 +43,11 @@ TEST(FrontCamera, ABlindOneShowsMidGrayAtItsTick) {
 }
 
 TEST(FrontCamera, ProjectsFromTheVehiclesPoseAndElevation) {
-  const FrontCamera camera(levelCamera(), straightRoad());
+  const RigCamera camera = frontCamera(levelCamera());
   traffic::Vehicle vehicle = vehicleAt("ego", 100.0, 50.0, 0.5 * 3.14159265358979323846);
   vehicle.state.elevation = 6.0;
   // Heading north, eye (100, 50.5, 7.4): the point lies 10 ahead, 5 right, 0.6 above.
-  const auto pixel = camera.project(vehicle, {105.0, 60.5, 8.0});
+  const auto pixel = pixelOf(camera, vehicle, {105.0, 60.5, 8.0});
   ASSERT_TRUE(pixel);
   EXPECT_NEAR(pixel->x(), 79.5 + 80.0 * 5.0 / 10.0, 1e-9);
   EXPECT_NEAR(pixel->y(), 47.5 - 80.0 * 0.6 / 10.0, 1e-9);
@@ -56,9 +56,9 @@ TEST(FrontCamera, ProjectsFromTheVehiclesPoseAndElevation) {
 TEST(FrontCamera, PitchLowersTheView) {
   CameraOptions options = levelCamera();
   options.pitch = 45.0;
-  const FrontCamera camera(options, straightRoad());
+  const RigCamera camera = frontCamera(options);
   // The ray 45 degrees down meets the road 1.4 m ahead of the eye: the principal point.
-  const auto pixel = camera.project(vehicleAt("ego", 0.0, 0.0), {1.9, 0.0, 0.0});
+  const auto pixel = pixelOf(camera, vehicleAt("ego", 0.0, 0.0), {1.9, 0.0, 0.0});
   ASSERT_TRUE(pixel);
   EXPECT_NEAR(pixel->x(), 79.5, 1e-9);
   EXPECT_NEAR(pixel->y(), 47.5, 1e-9);

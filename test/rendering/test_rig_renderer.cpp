@@ -40,7 +40,6 @@ std::set<std::string> camerasThatSee(const CameraRig& rig, const std::vector<Ren
 
 TEST(RigRenderer, AKnownPointFallsOnAKnownPixelInEachCamera) {
   const CameraRig rig = sixCameras();
-  const RigRenderer renderer(rig, straightRoad());
   // From each camera 10 m along its axis, 2 m to its right and on the road, 1.6 m below it:
   // u = 79.5 + 2 f / 10, v = 47.5 + 1.6 f / 10 with f = 80 / tan(35 deg) = 114.25184, of the back
   // camera 80 / tan(55 deg) = 56.01660. The vehicle stands at (100, 50) and heads north, so that
@@ -61,14 +60,15 @@ TEST(RigRenderer, AKnownPointFallsOnAKnownPixelInEachCamera) {
     ASSERT_EQ(rig.cameras[i].name, one.name);
     const double x = one.x + 10.0 * one.axis_x + 2.0 * one.axis_y;
     const double y = one.y + 10.0 * one.axis_y - 2.0 * one.axis_x;
-    const auto pixel = renderer.project(i, vehicle, {100.0 - y, 50.0 + x, 3.0});
+    const auto pixel = pixelOf(rig.cameras[i], vehicle, {100.0 - y, 50.0 + x, 3.0});
     ASSERT_TRUE(pixel) << one.name;
     EXPECT_NEAR(pixel->x(), 79.5 + 0.2 * one.focal_length, 1e-4) << one.name;
     EXPECT_NEAR(pixel->y(), 47.5 + 0.16 * one.focal_length, 1e-4) << one.name;
     const Eigen::Vector3d projected = projectionOf(rig.cameras[i]) * Eigen::Vector4d(x, y, 0, 1);
     EXPECT_NEAR(projected.x() / projected.z(), pixel->x(), 1e-9) << one.name;
     EXPECT_NEAR(projected.y() / projected.z(), pixel->y(), 1e-9) << one.name;
-    EXPECT_FALSE(renderer.project(i, vehicle, {100.0 + 3.0 * y, 50.0 - 3.0 * x, 3.0})) << one.name;
+    EXPECT_FALSE(pixelOf(rig.cameras[i], vehicle, {100.0 + 3.0 * y, 50.0 - 3.0 * x, 3.0}))
+        << one.name;
   }
 }
 

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/sumo_input_rules.h"
+#include "support/error_text.h"
 #include "support/real_data.h"
 
 namespace cdiff::simulation {
@@ -17,14 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::errorOf;
 
 std::string demandError(const std::string& text) {
   return errorOf([&] { requireHarmlessDemand(text, "demand file 'a.rou.xml'"); });

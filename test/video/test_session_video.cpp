@@ -13,7 +13,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "record/verdict_cases.h"
 #include "video/session_video.h"
-#include "video/video_ink.h"
+#include "video/video_highlights.h"
 
 namespace cdiff::video {
 namespace {

@@ -3,8 +3,6 @@
 #include "evaluation/intervals/intervals.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <numeric>
 
 #include "e2e_cdiff/core/random.h"
+#include "metrics/formulas/quantiles.h"
 
 namespace cdiff::evaluation {
 
@@ -103,21 +102,6 @@ class Pool {
   double weight_ = 0.0;
 };
 
-/// Probability that the expanded percentile interval leaves out at each end (intervals.h).
-double expandedTail(std::size_t routes) {
-  const auto m = static_cast<double>(routes);
-  const double t = boost::math::quantile(boost::math::students_t(m - 1.0), 1.0 - kTail);
-  return boost::math::cdf(boost::math::normal(), -std::sqrt(m / (m - 1.0)) * t);
-}
-
-/// Linear between neighbors; `sorted` is not empty.
-double quantileOf(const std::vector<double>& sorted, double probability) {
-  const double place = probability * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
 std::optional<double> difference(const std::optional<double>& a, const std::optional<double>& b) {
   return a && b ? std::optional<double>(*b - *a) : std::nullopt;
 }
@@ -177,8 +161,11 @@ std::optional<Interval> RouteBootstrap::interval(std::size_t routes, const Repli
   const double spread = values.back() - values.front();
   if (spread <= kEqual * std::max(std::abs(values.front()), std::abs(values.back())))
     return std::nullopt;
-  const double tail = expandedTail(routes);
-  return Interval{quantileOf(values, tail), quantileOf(values, 1.0 - tail)};
+  const auto at = [&](double share) {
+    return metrics::quantileOf(values, share, metrics::QuantileRule::kLinear);
+  };
+  const double tail = metrics::expandedTail(routes);
+  return Interval{at(tail), at(1.0 - tail)};
 }
 
 const std::vector<std::uint32_t>& RouteBootstrap::draws(std::size_t routes) {

@@ -63,11 +63,10 @@ using RouteSums = std::vector<RouteSum>;
 std::optional<double> pooledValue(const RouteSums& routes);
 
 /// Bootstrap that draws whole routes with all their runs, since runs of one route are alike. The
-/// interval is the *expanded percentile* interval (Hesterberg 2015, The American Statistician 69,
-/// 371-386, section 5.3): of kReplicates replicates the quantiles at a and 1 - a with
-/// a = Phi(-sqrt(m / (m - 1)) t(0.975; m - 1)) of m routes, which widens the plain percentile
-/// interval as Student's t does for few routes, and never leaves the range of the values. The draws
-/// are a function of the replicate and m alone.
+/// interval is the *expanded percentile* interval: of kReplicates replicates the quantiles at a and
+/// 1 - a with a = metrics::expandedTail of m routes, which widens the plain percentile interval as
+/// Student's t does for few routes, and never leaves the range of the values. The draws are a
+/// function of the replicate and m alone.
 class RouteBootstrap {
  public:
   static constexpr std::size_t kReplicates = 10000;

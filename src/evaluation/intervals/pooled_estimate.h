@@ -13,6 +13,8 @@
 
 namespace cdiff::evaluation {
 
+// A measure over all runs of a system, with its 95 % interval.
+
 /// The rule by which a batch pools a measure over runs: that of its definition in metrics, or of
 /// the batch itself for the few measures that a batch adds. A plain mean for an unknown name.
 metrics::PoolingRule poolingOfMeasure(const std::string& measure);

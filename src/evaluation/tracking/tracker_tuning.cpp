@@ -76,8 +76,8 @@ planning::PlanTrackerOptions tuneTracker(const TuningTracks& tracks,
   return best;
 }
 
-TrackerRow judgeTracker(const NamedTracker& tracker, const TuningTracks& tracks,
-                        const dynamics::BicycleModel& model) {
+TrackerRow evaluateTracker(const NamedTracker& tracker, const TuningTracks& tracks,
+                           const dynamics::BicycleModel& model) {
   TrackerRow row;
   row.name = tracker.name;
   row.tuning = drive(tracks.tuning, tracker, model, tracks.random);

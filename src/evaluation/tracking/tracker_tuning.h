@@ -10,6 +10,8 @@
 
 namespace cdiff::evaluation {
 
+// Tunes the constants of a tracker of plans on drawn tracks (`cdiff tune`).
+
 /// What is tuned, and on how much.
 struct TuningOptions {
   std::int64_t seed = 1;  ///< of the tracks and of what plans are beside them
@@ -51,8 +53,8 @@ struct TrackerRow {
   std::vector<TrackingMeasures> by_kind;  ///< of the held-out tracks, in the order of trackKinds()
 };
 
-TrackerRow judgeTracker(const NamedTracker& tracker, const TuningTracks& tracks,
-                        const dynamics::BicycleModel& model);
+TrackerRow evaluateTracker(const NamedTracker& tracker, const TuningTracks& tracks,
+                           const dynamics::BicycleModel& model);
 
 /// Markdown: a line per tracker.
 std::string tuningTable(const std::vector<TrackerRow>& rows);

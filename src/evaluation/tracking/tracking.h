@@ -12,6 +12,8 @@
 
 namespace cdiff::evaluation {
 
+// How well a tracker follows plans: driven on drawn tracks and measured.
+
 /// Action at a speed [m/s] for a plan in the body frame [rows, 2]; one call per decision.
 using Following = std::function<traffic::ControlAction(double, const Eigen::MatrixX2d&)>;
 

@@ -44,15 +44,6 @@ DistributionMeasure SampleStatistics::measure(const std::string& reason_when_emp
   return measure;
 }
 
-std::optional<double> quantileOf(std::vector<double> samples, double share) {
-  if (samples.empty()) return std::nullopt;
-  std::sort(samples.begin(), samples.end());
-  const double place = share * static_cast<double>(samples.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, samples.size() - 1);
-  return samples[below] + (place - std::floor(place)) * (samples[above] - samples[below]);
-}
-
 void TickShare::add(bool held) {
   ++ticks_;
   if (held) ++held_ticks_;

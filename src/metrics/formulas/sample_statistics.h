@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "e2e_cdiff/metrics/metric.h"
 
@@ -37,10 +36,6 @@ class SampleStatistics {
   double squares_ = 0.0;  ///< sum of squared differences to the mean
   double minimum_ = 0.0;
 };
-
-/// The value below which a share in [0, 1] of the samples lies, linear between order statistics
-/// (NumPy's default, type 7 of Hyndman and Fan 1996); absent without samples.
-std::optional<double> quantileOf(std::vector<double> samples, double share);
 
 /// Share of ticks of equal length at which something held [%]: 100 x ticks where it did / ticks.
 class TickShare {

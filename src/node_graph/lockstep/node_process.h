@@ -15,6 +15,8 @@
 
 namespace cdiff::node_graph {
 
+// What a node knows of processes: its own stop signals and wall clock, and the nodes beside it.
+
 /// SIGINT, SIGTERM and SIGHUP without a handler: they are blocked from here on, in every thread
 /// made later, and asked for when it suits. So a session can end in order, whatever it is doing.
 class StopSignal {

@@ -12,6 +12,8 @@
 
 namespace cdiff::node_graph {
 
+// What drives when an answer is late (real_time_factor > 0).
+
 /// What moves a vehicle at a tick.
 struct AppliedAction {
   planning::PlannedAction planned;

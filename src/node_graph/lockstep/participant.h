@@ -23,6 +23,8 @@
 
 namespace cdiff::node_graph {
 
+// The part that all nodes of a session but the traffic simulator share.
+
 /// How a node's session came to its end.
 enum class Ending { kFinalSnapshot, kSimulatorGone, kSimulatorSilent, kStopped };
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "metrics/formulas/quantiles.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "node_graph/messages/markers.h"
 #include "node_graph/messages/message_checks.h"
 #include "node_graph/session_graph.h"
-#include "record/logs/planner_logs.h"
 #include "session/closed_loop.h"
 
 namespace cdiff::node_graph {
@@ -44,8 +44,10 @@ void PlannerStatistics::diagnose(diagnostic_updater::DiagnosticStatusWrapper& st
   std::vector<double> sorted = latencies_ms_;
   std::sort(sorted.begin(), sorted.end());
   if (!sorted.empty()) {
-    status.add("latency p50 [ms]", core::formatFixed(record::nearestRank(sorted, 50.0), 2));
-    status.add("latency p95 [ms]", core::formatFixed(record::nearestRank(sorted, 95.0), 2));
+    for (const auto& [name, share] : {std::pair{"p50", 0.5}, {"p95", 0.95}}) {
+      const double value = metrics::quantileOf(sorted, share, metrics::QuantileRule::kNearestRank);
+      status.add(std::string("latency ") + name + " [ms]", core::formatFixed(value, 2));
+    }
   }
   status.add("decisions", latencies_ms_.size());
   status.add("deadline misses", deadline_misses_);

@@ -12,7 +12,7 @@
 #include "page/pictures/attention.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/map_canvas.h"
-#include "page/pictures/perceived.h"
+#include "page/pictures/perception.h"
 
 namespace cdiff::page {
 namespace {

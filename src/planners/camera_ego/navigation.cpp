@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::planners {
 namespace {
@@ -38,13 +37,6 @@ RoadCommand changeOf(const map::RoadNetwork& network, const map::Route& route, d
 }  // namespace
 
 const char* toText(RoadCommand command) { return kNames[static_cast<std::size_t>(command)]; }
-
-RoadCommand roadCommandOf(std::int64_t number) {
-  if (number < 0) return RoadCommand::kFollow;
-  if (number < kRoadCommands) return static_cast<RoadCommand>(number);
-  throw core::InputError("the route's command is " + std::to_string(number) +
-                         "; expected 0 (left) to 5 (change_right), or a negative number for none");
-}
 
 Navigation::Navigation(const map::RoadNetwork& network, const map::Route& route) {
   const auto add = [&](double arc_length, RoadCommand command) {

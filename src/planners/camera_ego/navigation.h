@@ -12,6 +12,8 @@
 
 namespace cdiff::planners {
 
+// What a camera ego is told of its route, as Bench2Drive's agents are: a command and a point.
+
 /// What the route asks for next, in the order of Bench2Drive's labels (CARLA's RoadOption minus 1).
 enum class RoadCommand : std::int32_t {
   kLeft = 0,
@@ -25,9 +27,6 @@ inline constexpr std::int64_t kRoadCommands = 6;
 
 /// "left", "right", "straight", "follow", "change_left" or "change_right".
 const char* toText(RoadCommand command);
-/// The command of a number as RoadOption minus 1 counts; negative numbers (void) are kFollow, as in
-/// Bench2Drive's agents. Throws InputError for numbers above 5.
-RoadCommand roadCommandOf(std::int64_t number);
 
 /// A node of the plan along a route (map frame).
 struct NavigationNode {

@@ -8,52 +8,42 @@
 #include "inference/transformer_layers.h"
 
 namespace cdiff::planners {
-namespace {
-
-void addLayers(const std::string& network, std::int64_t outputs, inference::TensorList& list) {
-  constexpr std::int64_t kHidden = PpoActor::kHidden;
-  list.layer(network + ".first", {kHidden, static_cast<std::int64_t>(kPpoInputs)});
-  list.layer(network + ".second", {kHidden, kHidden});
-  list.layer(network + ".last", {outputs, kHidden});
-}
-
-PpoLayer actorLayer(const PpoActor::Weights& weights, const std::string& name) {
-  return {weights.at("actor." + name + ".weight"), weights.at("actor." + name + ".bias")};
-}
-
-void rectify(std::array<float, PpoActor::kHidden>& values) {
-  for (float& value : values) value = std::max(value, 0.0F);
-}
-
-}  // namespace
 
 PpoLayer::PpoLayer(const inference::Tensor& weight, const inference::Tensor& bias)
-    : inputs_(static_cast<std::size_t>(weight.shape.at(1))),
-      weight_(weight.values.size()),
-      bias_(bias.values) {
+    : weight_(weight.values.size()), bias_(bias.values) {
   const std::size_t outputs = bias_.size();
+  const std::size_t inputs = weight_.size() / outputs;
   for (std::size_t o = 0; o < outputs; ++o) {
-    for (std::size_t i = 0; i < inputs_; ++i)
-      weight_[i * outputs + o] = weight.values[o * inputs_ + i];
+    for (std::size_t i = 0; i < inputs; ++i)
+      weight_[i * outputs + o] = weight.values[o * inputs + i];
   }
 }
 
-void PpoLayer::apply(const float* x, float* y) const {
-  const std::size_t outputs = bias_.size();
-  std::copy(bias_.begin(), bias_.end(), y);
-  for (std::size_t i = 0; i < inputs_; ++i) {
+std::vector<float> PpoLayer::apply(const std::vector<float>& x) const {
+  std::vector<float> y = bias_;
+  for (std::size_t i = 0; i < x.size(); ++i) {
     const float value = x[i];
     if (value == 0.0F) continue;
-    const float* row = weight_.data() + i * outputs;
-    for (std::size_t o = 0; o < outputs; ++o) y[o] += row[o] * value;
+    const float* row = weight_.data() + i * y.size();
+    for (std::size_t o = 0; o < y.size(); ++o) y[o] += row[o] * value;
   }
+  return y;
+}
+
+std::vector<PpoLayerShape> ppoLayers(std::int64_t outputs) {
+  constexpr std::int64_t kHidden = 256;
+  return {{"first", {kHidden, static_cast<std::int64_t>(kPpoInputs)}},
+          {"second", {kHidden, kHidden}},
+          {"last", {outputs, kHidden}}};
 }
 
 std::vector<inference::TensorShape> PpoActor::tensors() {
+  constexpr auto kOutputs = static_cast<std::int64_t>(kPpoActions);
   inference::TensorList list;
-  addLayers("actor", static_cast<std::int64_t>(kPpoActions), list);
-  list.add("actor.log_deviation", {static_cast<std::int64_t>(kPpoActions)});
-  addLayers("critic", 1, list);
+  for (const auto& [name, shape] : ppoLayers(kOutputs))
+    list.layer("actor." + std::string(name), shape);
+  list.add("actor.log_deviation", {kOutputs});
+  for (const auto& [name, shape] : ppoLayers(1)) list.layer("critic." + std::string(name), shape);
   return list.take();
 }
 
@@ -62,23 +52,24 @@ PpoActor::Weights PpoActor::readWeights(const std::filesystem::path& folder) {
                                [](const WeightMetadata&, const std::string&) { return tensors(); });
 }
 
-PpoActor::PpoActor(const Weights& weights)
-    : first_(actorLayer(weights, "first")),
-      second_(actorLayer(weights, "second")),
-      last_(actorLayer(weights, "last")) {
+PpoActor::PpoActor(const Weights& weights) {
+  for (const PpoLayerShape& layer : ppoLayers(static_cast<std::int64_t>(kPpoActions))) {
+    const std::string name = "actor." + std::string(layer.name);
+    layers_.emplace_back(weights.at(name + ".weight"), weights.at(name + ".bias"));
+  }
   const std::vector<float>& logarithm = weights.at("actor.log_deviation").values;
   for (std::size_t i = 0; i < kPpoActions; ++i) deviation_[i] = std::exp(logarithm.at(i));
 }
 
 PpoAction PpoActor::mean(const PpoObservation& observation) const {
-  std::array<float, kHidden> first;
-  std::array<float, kHidden> second;
+  std::vector<float> x(observation.begin(), observation.end());
+  for (const PpoLayer& layer : layers_) {
+    x = layer.apply(x);
+    if (&layer == &layers_.back()) break;
+    for (float& value : x) value = std::max(value, 0.0F);
+  }
   PpoAction mean;
-  first_.apply(observation.data(), first.data());
-  rectify(first);
-  second_.apply(first.data(), second.data());
-  rectify(second);
-  last_.apply(second.data(), mean.data());
+  std::copy(x.begin(), x.end(), mean.begin());
   return mean;
 }
 

@@ -20,23 +20,28 @@ class PpoLayer {
  public:
   /// `weight` [outputs, inputs], `bias` [outputs].
   PpoLayer(const inference::Tensor& weight, const inference::Tensor& bias);
-  /// y of x; both have their own memory. Inputs that are 0 cost nothing.
-  void apply(const float* x, float* y) const;
-  std::size_t outputs() const { return bias_.size(); }
+  /// y of x. Inputs that are 0 cost nothing.
+  std::vector<float> apply(const std::vector<float>& x) const;
 
  private:
-  std::size_t inputs_;
   std::vector<float> weight_;  ///< [inputs, outputs]
   std::vector<float> bias_;
 };
 
-/// The actor of PPO: 24-256-256-2 with ReLU between the layers, and a standard deviation that does
-/// not depend on the observation. The weight file also holds the critic, 24-256-256-1, for training
-/// to go on from. Training builds the same networks of torch (training/ppo_networks.h).
+/// A layer of actor or critic: its name, and the shape [outputs, inputs] of its weight.
+struct PpoLayerShape {
+  const char* name;
+  std::vector<std::int64_t> shape;
+};
+
+/// The layers of a network with ReLU between them, 24-256-256-`outputs`: the actor that drives, the
+/// networks that are trained (training/ppo_networks.h) and the weight file follow from it.
+std::vector<PpoLayerShape> ppoLayers(std::int64_t outputs);
+
+/// The actor of PPO, of two outputs, and a standard deviation that does not depend on the
+/// observation. The weight file also holds the critic, of one output, for training to go on from.
 class PpoActor {
  public:
-  static constexpr std::int64_t kHidden = 256;
-
   using Weights = WeightTensors;
 
   /// Names and shapes of the weights of actor ("actor.") and critic ("critic.").
@@ -55,9 +60,7 @@ class PpoActor {
   const PpoAction& deviation() const { return deviation_; }
 
  private:
-  PpoLayer first_;
-  PpoLayer second_;
-  PpoLayer last_;
+  std::vector<PpoLayer> layers_;
   PpoAction deviation_{};
 };
 

@@ -11,6 +11,8 @@
 
 namespace cdiff::planners {
 
+// Simulated returns of RIFT's candidates among forecasts of the others.
+
 /// Another vehicle's forecast: its states 0.1, 0.2, ... 4 s ahead (map frame).
 struct RiftNeighbor {
   std::vector<traffic::VehicleState> states;

@@ -7,8 +7,16 @@
 #include <numeric>
 
 #include "core/text.h"
+#include "metrics/formulas/quantiles.h"
 
 namespace cdiff::record {
+namespace {
+
+double nearestRank(const std::vector<double>& sorted, double share) {
+  return metrics::quantileOf(sorted, share, metrics::QuantileRule::kNearestRank);
+}
+
+}  // namespace
 
 SampleSummary summaryOf(const std::vector<double>& values) {
   std::vector<double> sorted;
@@ -21,15 +29,9 @@ SampleSummary summaryOf(const std::vector<double>& values) {
   if (sorted.empty()) return summary;
   summary.mean =
       std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
-  summary.percentile_95 = nearestRank(sorted, 95.0);
+  summary.percentile_95 = nearestRank(sorted, 0.95);
   summary.maximum = sorted.back();
   return summary;
-}
-
-double nearestRank(const std::vector<double>& sorted, double percent) {
-  const double count = static_cast<double>(sorted.size());
-  const double rank = std::clamp(std::ceil(percent / 100.0 * count), 1.0, count);
-  return sorted[static_cast<std::size_t>(rank) - 1];
 }
 
 void LatencyLog::observe(const std::vector<session::PlannerLatency>& latencies) {
@@ -43,7 +45,7 @@ std::map<std::string, LatencySummary> LatencyLog::summaries() const {
   for (const auto& [planner, samples] : samples_) {
     std::vector<double> sorted = samples;
     std::sort(sorted.begin(), sorted.end());
-    summaries[planner] = {nearestRank(sorted, 50.0), nearestRank(sorted, 95.0), sorted.back(),
+    summaries[planner] = {nearestRank(sorted, 0.5), nearestRank(sorted, 0.95), sorted.back(),
                           sorted.size()};
   }
   return summaries;
@@ -70,8 +72,8 @@ std::map<std::string, LateCounts> LateLog::counts() const {
     std::vector<double> sorted = samples;
     std::sort(sorted.begin(), sorted.end());
     LateCounts& counts = all[planner];
-    counts.median = nearestRank(sorted, 50.0);
-    counts.percentile_95 = nearestRank(sorted, 95.0);
+    counts.median = nearestRank(sorted, 0.5);
+    counts.percentile_95 = nearestRank(sorted, 0.95);
     counts.maximum = sorted.back();
   }
   return all;

@@ -24,17 +24,13 @@ struct SampleSummary {
 
 SampleSummary summaryOf(const std::vector<double>& values);
 
-/// Latencies [ms] of a planner over its decisions.
+/// Latencies [ms] of a planner over its decisions; percentiles by nearest rank.
 struct LatencySummary {
   double median = 0.0;         ///< [ms]
   double percentile_95 = 0.0;  ///< [ms]
   double maximum = 0.0;        ///< [ms]
   std::size_t n = 0;           ///< decisions
 };
-
-/// Percentile by nearest rank: the smallest value that is not below `percent` % of all values.
-/// `sorted` is in ascending order and not empty.
-double nearestRank(const std::vector<double>& sorted, double percent);
 
 /// Collects the wall time that each planner took per decision [ms].
 class LatencyLog {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "map/lane_graph.h"
 #include "planners/camera_ego/navigation.h"
 #include "planners/course.h"
@@ -45,35 +44,6 @@ TEST(Navigation, CommandsATurnFromFiftyMetersBeforeToItsEnd) {
   EXPECT_NEAR(navigation.next(begin + 1.0).arc_length, end, 1e-9);
   EXPECT_EQ(navigation.next(end + 1.0).command, RoadCommand::kFollow);
   EXPECT_NEAR(navigation.next(1e6).arc_length, turn.route.length(), 1e-9);
-}
-
-TEST(Navigation, NumbersAreThoseOfRoadOption) {
-  EXPECT_EQ(roadCommandOf(0), RoadCommand::kLeft);
-  EXPECT_EQ(roadCommandOf(5), RoadCommand::kChangeRight);
-  EXPECT_EQ(roadCommandOf(-2), RoadCommand::kFollow) << "no command, as in Bench2Drive's agents";
-  try {
-    roadCommandOf(6);
-    FAIL() << "6 was taken";
-  } catch (const core::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("command is 6; expected 0 (left) to 5"),
-              std::string::npos)
-        << error.what();
-  }
-}
-
-/// 80 m along x, 20 m in a junction and 80 m on, turned by an angle [deg].
-RoadCommand commandOfATurn(double degrees) {
-  const double turn = core::degreesToRadians(degrees);
-  const Eigen::Vector2d middle =
-      Eigen::Vector2d(80.0, 0.0) + 20.0 * geometry::direction(0.5 * turn);
-  const Eigen::Vector2d last = middle + 80.0 * geometry::direction(turn);
-  const map::RoadNetwork network = testing::makeNetwork(
-      {{"in", testing::straight(0.0, 0.0, 80.0, 0.0)},
-       {":j", testing::straight(80.0, 0.0, middle.x(), middle.y()), 13.89, true},
-       {"out", testing::straight(middle.x(), middle.y(), last.x(), last.y())}},
-      {{"in", "out", "", "s"}});
-  const map::Route route = testing::routeAlong(network, {"in", ":j", "out"});
-  return Navigation(network, route).next(70.0).command;
 }
 
 TEST(Navigation, TurnsOfThirtyDegreesHaveASide) {
@@ -143,7 +113,7 @@ TEST(Navigation, IsKeptForARouteAndFollowsThePlace) {
 TEST(Navigation, CommandsHaveNames) {
   const char* names[] = {"left", "right", "straight", "follow", "change_left", "change_right"};
   for (std::int64_t i = 0; i < kRoadCommands; ++i) {
-    EXPECT_STREQ(toText(roadCommandOf(i)), names[i]);
+    EXPECT_STREQ(toText(static_cast<RoadCommand>(i)), names[i]);
   }
 }
 

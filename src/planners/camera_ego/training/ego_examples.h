@@ -17,6 +17,8 @@
 
 namespace cdiff::planners {
 
+// Labeled examples for camera egos, made of moments of recorded scenes.
+
 /// A box as the networks answer it: x, y, log width, log length, z, log height, sin, cos, vx, vy
 /// (body frame of the ego, SI units).
 inline constexpr std::size_t kAgentBoxNumbers = 10;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "learning/parameters.h"
-#include "planners/camera_ego/matching.h"
+#include "planners/camera_ego/hungarian.h"
 
 namespace cdiff::planners {
 namespace {

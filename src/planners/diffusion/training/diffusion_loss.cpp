@@ -195,7 +195,7 @@ using learning::Measures;
 using learning::toIndices;
 using learning::toVector;
 
-constexpr std::int64_t kJudgeSteps = 10;
+constexpr std::int64_t kMeasuredSteps = 10;
 /// Least spread, so that a proximal step stays possible everywhere.
 constexpr double kLeastSpread = 1e-3;
 
@@ -325,8 +325,8 @@ at::Tensor DiffusionLoss::fixedNoise(const at::Tensor& like, const std::string& 
   return toTensor(values, like.sizes(), device_);
 }
 
-Measures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
-                              const at::Tensor& gray_features) const {
+Measures DiffusionLoss::measureHeldOut(const DenoiserNet& denoiser, const TrainingBatch& held_out,
+                                       const at::Tensor& gray_features) const {
   const at::NoGradGuard no_gradient;
   const at::Tensor& clean = held_out.rollouts;
   const at::Tensor noise = fixedNoise(clean, "validation noise");
@@ -338,7 +338,7 @@ Measures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& 
     const at::Tensor noisy = addNoise(clean, steps(clean.size(0), k, device_), noise);
     addMeasures(prefix, predictClean(denoiser, noisy, k, held_out.context), clean, measures);
   }
-  const std::int64_t count = std::min(kJudgeSteps, last);
+  const std::int64_t count = std::min(kMeasuredSteps, last);
   addMeasures("sample_", sample(denoiser, noise, held_out.context, count), clean, measures);
   ContextBatch context = held_out.context;
   context.has_route = at::zeros_like(context.has_route);
@@ -370,11 +370,11 @@ at::Tensor DiffusionLoss::constantVelocity(const TrainingBatch& batch) const {
   return (metric - mean_) / scale_;
 }
 
-Measures DiffusionLoss::judgeFurther(const DenoiserNet& denoiser,
-                                     const TrainingBatch& held_out) const {
+Measures DiffusionLoss::measureFurther(const DenoiserNet& denoiser,
+                                       const TrainingBatch& held_out) const {
   const at::NoGradGuard no_gradient;
   const at::Tensor& clean = held_out.rollouts;
-  const std::int64_t count = std::min<std::int64_t>(kJudgeSteps, schedule_.steps());
+  const std::int64_t count = std::min<std::int64_t>(kMeasuredSteps, schedule_.steps());
   Measures measures;
   addMeasures("constant_velocity_", constantVelocity(held_out), clean, measures);
   for (const char* action : {"throttle", "steer", "brake"})

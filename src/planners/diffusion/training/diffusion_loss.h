@@ -122,12 +122,13 @@ class DiffusionLoss {
                    learning::Measures& measures) const;
   /// One-step predictions at K/2 and K and DDIM samples of held-out samples, the latter also with
   /// the features of a gray image and without route.
-  learning::Measures judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
-                           const at::Tensor& gray_features) const;
+  learning::Measures measureHeldOut(const DenoiserNet& denoiser, const TrainingBatch& held_out,
+                                    const at::Tensor& gray_features) const;
   /// What a card sets beside it: errors of going straight on at the own speed
   /// (`constant_velocity_`, states alone), the least ADE and FDE of kManySamples DDIM samples
   /// (`least_of_8_`), and errors of DDIM samples by maneuver (`sample_left_`, ...).
-  learning::Measures judgeFurther(const DenoiserNet& denoiser, const TrainingBatch& held_out) const;
+  learning::Measures measureFurther(const DenoiserNet& denoiser,
+                                    const TrainingBatch& held_out) const;
   /// Standard deviation of the clean prediction's error at k = K, [T, 7] normalized.
   traffic::Rollout spread(const DenoiserNet& denoiser, const TrainingBatch& held_out) const;
 

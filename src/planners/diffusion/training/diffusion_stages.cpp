@@ -191,7 +191,7 @@ class DiffusionStage : public learning::Stage {
 
   Measures measureHeldOut() override {
     if (cache_ == nullptr) held_out_ = encodeHeldOut(state_);
-    return state_.loss.judge(state_.denoiser, held_out_.batch, held_out_.gray_features);
+    return state_.loss.measureHeldOut(state_.denoiser, held_out_.batch, held_out_.gray_features);
   }
 
  private:

@@ -255,8 +255,9 @@ learning::TrainedModel DiffusionTask::finish() {
   trained.files = {
       {diffusion::kEncoderFile, std::move(files.encoder), false, diffusion::kEncoderKey},
       {diffusion::kDenoiserFile, std::move(files.denoiser), true, ""}};
-  trained.held_out = state_->loss.judge(state_->denoiser, held_out.batch, held_out.gray_features);
-  trained.held_out.merge(state_->loss.judgeFurther(state_->denoiser, held_out.batch));
+  trained.held_out =
+      state_->loss.measureHeldOut(state_->denoiser, held_out.batch, held_out.gray_features);
+  trained.held_out.merge(state_->loss.measureFurther(state_->denoiser, held_out.batch));
   trained.settings = {{"balance", settings.balance},
                       {"yielding_share", settings.yielding_share},
                       {"network", settings.network},

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/pluto/training/pluto_task.h"
 
-#include "planners/pluto/training/pluto_judge.h"
 #include "planners/pluto/training/pluto_losses.h"
+#include "planners/pluto/training/pluto_validation.h"
 
 namespace cdiff::planners {
 namespace {
@@ -45,12 +45,12 @@ class ImitationOfPlans : public learning::EvenStage {
   }
 
   learning::Measures measureHeldOut() override {
-    PlutoJudge judge({state_.settings.architecture, state_.net.parameters().values()});
+    PlutoValidation validation({state_.settings.architecture, state_.net.parameters().values()});
     for (const std::size_t index : state_.run.held_out) {
       const PlutoPlace& place = state_.places[index];
-      judge.add(state_.scenes[place.scene], place);
+      validation.add(state_.scenes[place.scene], place);
     }
-    return judge.measures();
+    return validation.measures();
   }
 
  private:

@@ -129,7 +129,7 @@ std::vector<PpoEpisode> PpoCollector::explore(const PpoActor& actor, std::int64_
   return run(jobs);
 }
 
-std::vector<PpoEpisode> PpoCollector::judge(const PpoActor& actor, std::int64_t rounds) const {
+std::vector<PpoEpisode> PpoCollector::evaluate(const PpoActor& actor, std::int64_t rounds) const {
   const core::RandomStream seeds(0, "ppo held-out seeds");
   std::vector<Job> jobs;
   for (std::int64_t round = 0; round < rounds; ++round) {

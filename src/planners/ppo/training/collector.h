@@ -40,7 +40,7 @@ class PpoCollector {
 
   /// The episodes of one session on each held-out route, repeated `rounds` times with other seeds
   /// and driven by the mean action tanh(mean). Throws as explore does.
-  std::vector<PpoEpisode> judge(const PpoActor& actor, std::int64_t rounds) const;
+  std::vector<PpoEpisode> evaluate(const PpoActor& actor, std::int64_t rounds) const;
 
  private:
   using Job = std::function<std::vector<PpoEpisode>()>;

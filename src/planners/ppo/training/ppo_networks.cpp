@@ -42,21 +42,21 @@ std::vector<float> orthogonalRows(std::size_t rows, std::size_t columns, double 
 
 void declare(learning::ParameterSet& parameters, std::int64_t outputs, double gain,
              const core::RandomStream& random) {
-  constexpr std::int64_t kHidden = PpoActor::kHidden;
-  parameters.declareLayer("first", {kHidden, static_cast<std::int64_t>(kPpoInputs)});
-  parameters.declareLayer("second", {kHidden, kHidden});
-  parameters.declareLayer("last", {outputs, kHidden});
+  for (const PpoLayerShape& layer : ppoLayers(outputs))
+    parameters.declareLayer(layer.name, layer.shape);
   std::map<std::string, inference::Tensor> values = parameters.values();
-  values.at("last.weight").values = orthogonalRows(static_cast<std::size_t>(outputs),
-                                                   static_cast<std::size_t>(kHidden), gain, random);
+  inference::Tensor& last = values.at("last.weight");
+  last.values = orthogonalRows(static_cast<std::size_t>(last.shape[0]),
+                               static_cast<std::size_t>(last.shape[1]), gain, random);
   for (float& bias : values.at("last.bias").values) bias = kLastBias;
   parameters.load(values, "start");
 }
 
 at::Tensor forward(const learning::ParameterSet& parameters, const at::Tensor& observations) {
-  const at::Tensor first = linear(parameters, "first", observations).relu();
-  const at::Tensor second = linear(parameters, "second", first).relu();
-  return linear(parameters, "last", second);
+  at::Tensor x;
+  for (const PpoLayerShape& layer : ppoLayers(1))
+    x = linear(parameters, layer.name, x.defined() ? x.relu() : observations);
+  return x;
 }
 
 }  // namespace

@@ -212,7 +212,7 @@ learning::Measures PpoStage::news() {
 
 learning::Measures PpoStage::measureHeldOut() {
   const PpoActor actor(training_.networks.weights());
-  const auto episodes = training_.collector().judge(actor, training_.settings.held_out_rounds);
+  const auto episodes = training_.collector().evaluate(actor, training_.settings.held_out_rounds);
   return PpoEpisodeCounts(episodes).measures("");
 }
 

@@ -4,7 +4,7 @@
 
 #include "learning/samples/sample_order.h"
 #include "planners/uniad_mini/training/uniad_losses.h"
-#include "planners/uniad_mini/training/uniad_mini_judge.h"
+#include "planners/uniad_mini/training/uniad_mini_validation.h"
 
 namespace cdiff::planners {
 namespace {
@@ -51,7 +51,7 @@ class UniadStage : public learning::Stage {
   const std::string& name() const override { return name_; }
   std::int64_t batchSize() const override { return batch_; }
   std::vector<std::size_t> samplesOf(std::int64_t step) override { return order_.at(step); }
-  learning::Measures measureHeldOut() override { return judgeUniad(state_); }
+  learning::Measures measureHeldOut() override { return heldOutMeasures(state_); }
 
   std::vector<learning::TrainedPart> parts() override {
     UniadMiniNet& net = state_.net;
@@ -127,14 +127,15 @@ std::unique_ptr<learning::Stage> makeUniadStage(UniadTrainingState& state,
   return std::make_unique<UniadStage>(state, name);
 }
 
-learning::Measures judgeUniad(UniadTrainingState& state) {
+learning::Measures heldOutMeasures(UniadTrainingState& state) {
   if (!state.prior)
     state.prior.emplace(state.data.agentCenters(kPriorSamples),
                         static_cast<std::size_t>(state.settings.architecture.tracks));
-  UniadMiniJudge judge({state.settings.architecture, state.net.values()}, *state.prior);
+  UniadMiniValidation validation({state.settings.architecture, state.net.values()}, *state.prior);
   const auto looks = static_cast<std::size_t>(state.settings.samples.past_looks) + 1;
-  for (const std::size_t index : state.run.held_out) judge.add(state.data.exampleOf(index, looks));
-  return judge.measures();
+  for (const std::size_t index : state.run.held_out)
+    validation.add(state.data.exampleOf(index, looks));
+  return validation.measures();
 }
 
 }  // namespace cdiff::planners

@@ -22,6 +22,6 @@ inline constexpr std::int64_t kUniadMiniBatch = 16;
 std::unique_ptr<learning::Stage> makeUniadStage(UniadTrainingState& state, const std::string& name);
 
 /// Measures on the held-out samples of a run.
-learning::Measures judgeUniad(UniadTrainingState& state);
+learning::Measures heldOutMeasures(UniadTrainingState& state);
 
 }  // namespace cdiff::planners

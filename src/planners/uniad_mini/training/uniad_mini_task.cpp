@@ -3,8 +3,8 @@
 #include "planners/uniad_mini/training/uniad_mini_task.h"
 
 #include "planners/camera_ego/training/bev_transfer.h"
-#include "planners/uniad_mini/training/uniad_mini_judge.h"
 #include "planners/uniad_mini/training/uniad_mini_stages.h"
+#include "planners/uniad_mini/training/uniad_mini_validation.h"
 
 namespace cdiff::planners {
 namespace {
@@ -128,7 +128,7 @@ learning::TrainedModel UniadMiniTask::finish() {
                   {networkMetadata(kUniadMini, settings.architecture), state_->net.values()},
                   true,
                   ""}};
-  model.held_out = judgeUniad(*state_);
+  model.held_out = heldOutMeasures(*state_);
   model.settings = facts();
   model.title = "UniAD mini";
   model.measures = uniadTable(model.held_out);

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "planners/camera_ego/training/ego_batch.h"
-#include "planners/vad_mini/training/vad_mini_judge.h"
+#include "planners/vad_mini/training/vad_mini_validation.h"
 
 namespace cdiff::planners {
 namespace {
@@ -50,12 +50,12 @@ class ImitationOfEgos : public learning::Stage {
     if (!state_.prior)
       state_.prior.emplace(state_.data.agentCenters(kPriorSamples),
                            static_cast<std::size_t>(architecture.agents));
-    VadMiniJudge judge({architecture, state_.net.parameters().values()}, *state_.prior);
+    VadMiniValidation validation({architecture, state_.net.parameters().values()}, *state_.prior);
     for (const std::size_t index : state_.run.held_out)
-      judge.add(state_.data.exampleOf(index, looks()));
+      validation.add(state_.data.exampleOf(index, looks()));
     const std::string& file = state_.settings.judged_by_network;
-    if (!file.empty()) core::writeFileAtomically(file, judge.judgment().byNetwork());
-    return judge.judgment().measures();
+    if (!file.empty()) core::writeFileAtomically(file, validation.byNetwork());
+    return validation.measures();
   }
 
  private:

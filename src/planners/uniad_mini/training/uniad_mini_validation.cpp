@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/uniad_mini/training/uniad_mini_judge.h"
+#include "planners/uniad_mini/training/uniad_mini_validation.h"
 
 #include <algorithm>
 
 #include "core/text.h"
 #include "planners/uniad_mini/training/uniad_losses.h"
 #include "planners/uniad_mini/uniad_mini.h"
-#include "planners/vad_mini/training/vad_mini_judge.h"
+#include "planners/vad_mini/training/vad_mini_validation.h"
 
 namespace cdiff::planners {
 namespace {
@@ -40,10 +40,11 @@ void copyBev(const inference::Rows& from, std::int64_t width, inference::Rows& t
 
 }  // namespace
 
-UniadMiniJudge::UniadMiniJudge(const UniadMiniModel& model, const ConstantDetections& prior)
+UniadMiniValidation::UniadMiniValidation(const UniadMiniModel& model,
+                                         const ConstantDetections& prior)
     : architecture_(model.architecture), network_(model), prior_(prior) {}
 
-UniadMiniOutput UniadMiniJudge::look(const EgoExample& example) {
+UniadMiniOutput UniadMiniValidation::look(const EgoExample& example) {
   UniadMiniOutput output;
   inference::Rows past;
   TrackSet tracks;
@@ -63,7 +64,7 @@ UniadMiniOutput UniadMiniJudge::look(const EgoExample& example) {
   return output;
 }
 
-void UniadMiniJudge::addForecasts(const EgoExample& example, const UniadMiniOutput& output) {
+void UniadMiniValidation::addForecasts(const EgoExample& example, const UniadMiniOutput& output) {
   for (const AgentLabel& label : example.agents) {
     const DetectedAgent* agent = agentAt(output, label);
     if (agent == nullptr || label.future.known < label.future.places.size()) continue;
@@ -76,7 +77,7 @@ void UniadMiniJudge::addForecasts(const EgoExample& example, const UniadMiniOutp
 }
 
 /// At the second waypoint, 1 s ahead.
-void UniadMiniJudge::addOccupancy(const EgoExample& example, const UniadMiniOutput& output) {
+void UniadMiniValidation::addOccupancy(const EgoExample& example, const UniadMiniOutput& output) {
   constexpr std::size_t kStep = 2;
   const std::vector<float> seen = output.occupancy.probability(kStep);
   std::vector<float> wanted(seen.size(), 0.0F);
@@ -92,13 +93,13 @@ void UniadMiniJudge::addOccupancy(const EgoExample& example, const UniadMiniOutp
   }
 }
 
-void UniadMiniJudge::add(const EgoExample& example) {
+void UniadMiniValidation::add(const EgoExample& example) {
   const UniadMiniOutput output = look(example);
   const PlanAdjustmentOptions adjustment;
   const BevGrid& bev = architecture_.ego.bev;
-  judgment_.add(example,
-                {output.plan, detectionsOf(output), sureLines({{}, output.lines, {}}, kSureLine)},
-                prior_, bev);
+  ego_.add(example,
+           {output.plan, detectionsOf(output), sureLines({{}, output.lines, {}}, kSureLine)},
+           prior_, bev);
   adjusted_.add(
       example, adjustedPlan(output.plan, occupiedPlaces(bev, output.occupancy, adjustment.occupied),
                             adjustment));
@@ -106,8 +107,8 @@ void UniadMiniJudge::add(const EgoExample& example) {
   addOccupancy(example, output);
 }
 
-learning::Measures UniadMiniJudge::measures() const {
-  learning::Measures measures = judgment_.measures();
+learning::Measures UniadMiniValidation::measures() const {
+  learning::Measures measures = ego_.measures();
   adjusted_.report(measures);
   measures["forecast_min_fde_m"] = end_count_ > 0.0 ? end_sum_ / end_count_ : 0.0;
   measures["occupancy_iou_1s_percent"] = join_ > 0.0 ? 100.0 * meet_ / join_ : 0.0;

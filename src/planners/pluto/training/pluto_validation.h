@@ -13,9 +13,9 @@ namespace cdiff::planners {
 
 /// Measures the planner's own network on moments: distances of plans from where the vehicle was in
 /// the 4 s to come (mean, and at their end) [m], and which plan it chooses.
-class PlutoJudge {
+class PlutoValidation {
  public:
-  explicit PlutoJudge(const PlutoModel& model) : model_(model) {}
+  explicit PlutoValidation(const PlutoModel& model) : model_(model) {}
   void add(const PlutoScene& scene, const PlutoPlace& place);
   learning::Measures measures() const;
 

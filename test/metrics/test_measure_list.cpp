@@ -4,14 +4,13 @@
 
 #include "core/file.h"
 #include "metrics/metric_registry.h"
-#include "record/metric_file.h"
 
-namespace cdiff::record {
+namespace cdiff::metrics {
 namespace {
 
 TEST(MeasureList, IsInTheDocumentationWordByWord) {
   const std::string page = core::readFile(core::shareFolder() / "docs" / "metrics.md", "page");
-  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+  for (const MeasureDefinition& definition : measureDefinitions()) {
     EXPECT_NE(page.find(definition.definition), std::string::npos) << definition.name;
     EXPECT_NE(page.find(definition.rift_compat), std::string::npos) << definition.name;
   }
@@ -29,4 +28,4 @@ TEST(MeasureList, HasASectionPerMeasure) {
 }
 
 }  // namespace
-}  // namespace cdiff::record
+}  // namespace cdiff::metrics

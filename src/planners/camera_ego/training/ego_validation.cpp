@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/camera_ego/training/ego_judgment.h"
+#include "planners/camera_ego/training/ego_validation.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "core/text.h"
 #include "e2e_cdiff/core/random.h"
+#include "metrics/formulas/quantiles.h"
 
 namespace cdiff::planners {
 namespace {
@@ -39,20 +38,6 @@ void addGains(learning::Measures& measures) {
         compared.better * (measures.at(compared.name) - measures.at(compared.baseline)) +
         0.0;  // no -0
   }
-}
-
-/// Probability that the expanded percentile interval leaves out at each end.
-double expandedTail(std::size_t networks) {
-  const double m = static_cast<double>(networks);
-  const double t = boost::math::quantile(boost::math::students_t(m - 1.0), 0.975);
-  return boost::math::cdf(boost::math::normal(), -std::sqrt(m / (m - 1.0)) * t);
-}
-
-double quantileOf(std::vector<double>& values, double share) {
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto nth = values.begin() + std::lround(place);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
 }
 
 }  // namespace
@@ -87,7 +72,7 @@ void EgoMeasures::report(learning::Measures& measures) const {
   measures["straight_map_chamfer_m"] = straight_.chamfer();
 }
 
-std::string EgoJudgment::byNetwork() const {
+std::string EgoValidation::byNetwork() const {
   std::string rows = "network,moments,measure,value\n";
   int number = 0;
   for (const auto& [name, part] : by_network_) {
@@ -101,7 +86,7 @@ std::string EgoJudgment::byNetwork() const {
   return rows;
 }
 
-learning::Measures EgoJudgment::measures() const {
+learning::Measures EgoValidation::measures() const {
   std::vector<const EgoMeasures*> networks;
   EgoMeasures all;
   for (const auto& [name, part] : by_network_) {
@@ -123,10 +108,12 @@ learning::Measures EgoJudgment::measures() const {
     addGains(of_drawn);
     for (const auto& [name, value] : of_drawn) replicates[name].push_back(value);
   }
-  const double tail = expandedTail(networks.size());
+  constexpr auto kRule = metrics::QuantileRule::kNearestToLinear;
+  const double tail = metrics::expandedTail(networks.size());
   for (auto& [name, values] : replicates) {
-    measures[name + "_low"] = quantileOf(values, tail);
-    measures[name + "_high"] = quantileOf(values, 1.0 - tail);
+    std::sort(values.begin(), values.end());
+    measures[name + "_low"] = metrics::quantileOf(values, tail, kRule);
+    measures[name + "_high"] = metrics::quantileOf(values, 1.0 - tail, kRule);
   }
   return measures;
 }

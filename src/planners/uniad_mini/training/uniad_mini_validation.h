@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "planners/camera_ego/training/ego_judgment.h"
+#include "planners/camera_ego/training/ego_validation.h"
 #include "planners/uniad_mini/plan_adjustment.h"
 #include "planners/uniad_mini/uniad_mini_network.h"
 
@@ -14,10 +14,10 @@ namespace cdiff::planners {
 /// as answered and as adjusted; beside them a vehicle that keeps its velocity, detections that
 /// never change, and a straight road. Besides the distances of forecasts' best modes, and the
 /// overlap of occupancy with where labeled agents are.
-class UniadMiniJudge {
+class UniadMiniValidation {
  public:
-  /// `prior` must outlive the judge.
-  UniadMiniJudge(const UniadMiniModel& model, const ConstantDetections& prior);
+  /// `prior` must outlive the validation.
+  UniadMiniValidation(const UniadMiniModel& model, const ConstantDetections& prior);
   void add(const EgoExample& example);
   learning::Measures measures() const;
 
@@ -29,7 +29,7 @@ class UniadMiniJudge {
   UniadMiniArchitecture architecture_;
   UniadMiniNetwork network_;
   const ConstantDetections& prior_;
-  EgoJudgment judgment_;
+  EgoValidation ego_;
   PlanMeasures adjusted_{"adjusted_"};
   double end_sum_ = 0.0, end_count_ = 0.0;  ///< smallest distances of forecasts at 3 s [m]
   double meet_ = 0.0, join_ = 0.0;          ///< cells occupied in both, and in either

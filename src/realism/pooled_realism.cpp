@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "realism/pooled.h"
+#include "realism/pooled_realism.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_options.h"
 #include "cbv/conflict_search.h"
 #include "support/network_text.h"

@@ -20,6 +20,8 @@
 
 namespace cdiff::realism {
 
+// Recordings from sessions, tick by tick.
+
 /// Wraps another selector: returns its selections up to the first hand-over; from then on only the
 /// vehicles of that hand-over stay selected, for as long as the other selector keeps them. Used by
 /// continueSession.

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "realism/pooled.h"
+#include "realism/pooled_realism.h"
 #include "realism/realism_tables.h"
 #include "realism/recorded_traffic.h"
 #include "realism/recording.h"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "e2e_cdiff/core/random.h"
-#include "planners/camera_ego/matching.h"
+#include "planners/camera_ego/hungarian.h"
 
 namespace cdiff::planners {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/camera_ego/matching.h"
+#include "planners/camera_ego/hungarian.h"
 
 #include <limits>
 #include <stdexcept>

@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "realism/matched.h"
+#include "realism/matched_realism.h"
 #include "realism/realism_tables.h"
 
 namespace cdiff::realism {

@@ -16,6 +16,8 @@
 
 namespace cdiff::collection {
 
+// Recovery samples: what a recorded vehicle would see and do beside its route.
+
 /// A displacement to the left [m] and counter-clockwise [rad].
 struct SampleOffset {
   double lateral = 0.0;
@@ -27,7 +29,7 @@ traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
                                      const traffic::VehicleState& here,
                                      const traffic::VehicleState& displaced);
 
-/// A sample as it would be beside its route, made by OffsetSamples.
+/// A sample as it would be beside its route, made by DisplacedSamples.
 struct DisplacedSample {
   learning::DrivingSample sample;
   bool off_course = false;  ///< SampleKinds::off_course at the displaced place
@@ -38,10 +40,10 @@ struct DisplacedSample {
 /// steering is PDM-Lite's toward the route, and the states are what the vehicle dynamics makes of
 /// these actions (rows in the frame of the displaced vehicle, SI units). Called by samplesOf for a
 /// share of the samples.
-class OffsetSamples {
+class DisplacedSamples {
  public:
   /// `setup` and `options` must outlive this object.
-  OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options);
+  DisplacedSamples(const session::SessionSetup& setup, const DatasetOptions& options);
 
   /// What the vehicle sees in the snapshot from `state`.
   traffic::CameraImage seen(const traffic::TrafficSnapshot& snapshot, traffic::Vehicle vehicle,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "video/video_ink.h"
+#include "video/video_highlights.h"
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>

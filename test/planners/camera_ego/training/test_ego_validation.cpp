@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "planners/camera_ego/training/ego_judgment.h"
+#include "planners/camera_ego/training/ego_validation.h"
 
 namespace cdiff::planners {
 namespace {
@@ -26,21 +26,22 @@ EgoAnswer answerBeside(double beside) {
 }
 
 /// Two moments of each network; the plan of network n lies n m beside the way.
-learning::Measures judged(std::uint64_t networks) {
+learning::Measures measured(std::uint64_t networks) {
   const ConstantDetections prior({}, 3);
-  EgoJudgment judgment;
+  EgoValidation validation;
   for (std::uint64_t network = 1; network <= networks; ++network) {
     for (int moment = 0; moment < 2; ++moment) {
-      judgment.add(momentOf(network), answerBeside(static_cast<double>(network)), prior, BevGrid{});
+      validation.add(momentOf(network), answerBeside(static_cast<double>(network)), prior,
+                     BevGrid{});
     }
   }
-  return judgment.measures();
+  return validation.measures();
 }
 
-TEST(EgoJudgment, DrawsNetworksForItsIntervals) {
+TEST(EgoValidation, DrawsNetworksForItsIntervals) {
   // Means of 1, 2, 3, 4, 5 m drawn with replacement lie within 1 and 5 around 3 m, and of 1,000
   // draws with a spread of sqrt(2 / 5) = 0.63 m the extreme ones are beyond 2 and 4.
-  const learning::Measures measures = judged(5);
+  const learning::Measures measures = measured(5);
   EXPECT_NEAR(measures.at("l2_at_1s_m"), 3.0, 1e-12);
   EXPECT_GE(measures.at("l2_at_1s_m_low"), 1.0);
   EXPECT_LE(measures.at("l2_at_1s_m_low"), 2.0);
@@ -48,10 +49,10 @@ TEST(EgoJudgment, DrawsNetworksForItsIntervals) {
   EXPECT_LE(measures.at("l2_at_1s_m_high"), 5.0);
 }
 
-TEST(EgoJudgment, SaysByHowMuchAPlanIsBetterThanAConstantVelocity) {
+TEST(EgoValidation, SaysByHowMuchAPlanIsBetterThanAConstantVelocity) {
   // A constant velocity is where the ego drove: the plan is worse by 3 m on average, between 1 and
   // 5 m in every draw; the same networks on both sides.
-  const learning::Measures measures = judged(5);
+  const learning::Measures measures = measured(5);
   EXPECT_NEAR(measures.at("constant_velocity_l2_at_2s_m"), 0.0, 1e-12);
   EXPECT_NEAR(measures.at("l2_at_2s_m_gain"), -3.0, 1e-12);
   EXPECT_NEAR(measures.at("l2_at_2s_m_gain_low"), -measures.at("l2_at_2s_m_high"), 1e-12);
@@ -59,20 +60,20 @@ TEST(EgoJudgment, SaysByHowMuchAPlanIsBetterThanAConstantVelocity) {
   EXPECT_NE(egoTable(measures, "Plan").find("| Plan | 3.00 ["), std::string::npos);
 }
 
-TEST(EgoJudgment, HasNoIntervalsOfTwoNetworks) {
-  const learning::Measures measures = judged(2);
+TEST(EgoValidation, HasNoIntervalsOfTwoNetworks) {
+  const learning::Measures measures = measured(2);
   EXPECT_NEAR(measures.at("l2_at_1s_m"), 1.5, 1e-12);
   EXPECT_EQ(measures.count("l2_at_1s_m_low"), 0U);
   EXPECT_NE(egoTable(measures, "Plan").find("| Plan | 1.50 / 1.50 / 1.50 |"), std::string::npos);
 }
 
-TEST(EgoJudgment, WritesARowForEachNetworkAndMeasure) {
+TEST(EgoValidation, WritesARowForEachNetworkAndMeasure) {
   const ConstantDetections prior({}, 3);
-  EgoJudgment judgment;
-  judgment.add(momentOf(7), answerBeside(0.25), prior, BevGrid{});
+  EgoValidation validation;
+  validation.add(momentOf(7), answerBeside(0.25), prior, BevGrid{});
   for (int moment = 0; moment < 2; ++moment)
-    judgment.add(momentOf(9), answerBeside(0.5), prior, BevGrid{});
-  const std::string rows = judgment.byNetwork();
+    validation.add(momentOf(9), answerBeside(0.5), prior, BevGrid{});
+  const std::string rows = validation.byNetwork();
   EXPECT_EQ(rows.find("network,moments,measure,value\n1,1,"), 0U) << rows;
   EXPECT_NE(rows.find("\n1,1,l2_at_2s_m,0.25\n"), std::string::npos) << rows;
   EXPECT_NE(rows.find("\n2,2,l2_at_2s_m,0.5\n"), std::string::npos) << rows;

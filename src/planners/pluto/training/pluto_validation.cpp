@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/pluto/training/pluto_judge.h"
+#include "planners/pluto/training/pluto_validation.h"
 
 #include <algorithm>
 #include <utility>
@@ -11,22 +11,24 @@
 namespace cdiff::planners {
 namespace {
 
-constexpr std::int64_t kJudgedSteps = 40;
+constexpr std::int64_t kComparedSteps = 40;
 
-using JudgedPlaces = Eigen::Matrix<float, Eigen::Dynamic, 2>;
+using PlannedPlaces = Eigen::Matrix<float, Eigen::Dynamic, 2>;
 
-std::int64_t judgedSteps(const PlutoTarget& target) { return std::min(kJudgedSteps, target.steps); }
+std::int64_t comparedSteps(const PlutoTarget& target) {
+  return std::min(kComparedSteps, target.steps);
+}
 
 /// Mean and last distance of a plan's places from those driven.
-std::pair<double, double> distancesOf(const JudgedPlaces& plan, const PlutoTarget& target) {
-  const std::int64_t steps = judgedSteps(target);
+std::pair<double, double> distancesOf(const PlannedPlaces& plan, const PlutoTarget& target) {
+  const std::int64_t steps = comparedSteps(target);
   const Eigen::VectorXf apart =
       (plan.topRows(steps) - target.future.leftCols<2>().topRows(steps)).rowwise().norm();
   return {static_cast<double>(apart.mean()), static_cast<double>(apart(steps - 1))};
 }
 
-JudgedPlaces atSpeed(double speed) {
-  JudgedPlaces places = JudgedPlaces::Zero(kPlutoSteps, 2);
+PlannedPlaces atSpeed(double speed) {
+  PlannedPlaces places = PlannedPlaces::Zero(kPlutoSteps, 2);
   for (Eigen::Index i = 0; i < places.rows(); ++i)
     places(i, 0) = static_cast<float>(speed * kPlutoPeriod * static_cast<double>(i + 1));
   return places;
@@ -34,14 +36,14 @@ JudgedPlaces atSpeed(double speed) {
 
 }  // namespace
 
-PlutoNetwork& PlutoJudge::networkOf(const PlutoWorld& world) {
+PlutoNetwork& PlutoValidation::networkOf(const PlutoWorld& world) {
   const auto known = networks_.find(&world);
   if (known != networks_.end()) return known->second;
   return networks_.emplace(&world, PlutoNetwork(model_, world.builder.pieces().all()))
       .first->second;
 }
 
-void PlutoJudge::add(const PlutoScene& scene, const PlutoPlace& place) {
+void PlutoValidation::add(const PlutoScene& scene, const PlutoPlace& place) {
   const PlutoMoment moment = scene.moment(place.decision, place.drive);
   const PlutoSceneBuilder& builder = scene.world().builder;
   const std::vector<ReferenceLine> lines = builder.linesOf(moment);
@@ -73,7 +75,7 @@ void PlutoJudge::add(const PlutoScene& scene, const PlutoPlace& place) {
   right_ += right ? 1.0 : 0.0;
 }
 
-void PlutoJudge::addBaselines(const PlutoTarget& target, double speed) {
+void PlutoValidation::addBaselines(const PlutoTarget& target, double speed) {
   for (const auto& [name, pace] :
        {std::make_pair("standing", 0.0), std::make_pair("constant_speed", speed)}) {
     const auto [mean, end] = distancesOf(atSpeed(pace), target);
@@ -82,7 +84,7 @@ void PlutoJudge::addBaselines(const PlutoTarget& target, double speed) {
   }
 }
 
-learning::Measures PlutoJudge::measures() const {
+learning::Measures PlutoValidation::measures() const {
   learning::Measures measures;
   const double count = std::max(1.0, count_);
   for (const auto& [name, sum] : sums_) {

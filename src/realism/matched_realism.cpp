@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "realism/matched.h"
+#include "realism/matched_realism.h"
 
 #include <deque>
 #include <map>

@@ -3,19 +3,20 @@
 #pragma once
 
 #include "planners/camera_ego/training/ego_data.h"
-#include "planners/camera_ego/training/ego_judgment.h"
+#include "planners/camera_ego/training/ego_validation.h"
 #include "planners/vad_mini/vad_mini_network.h"
 
 namespace cdiff::planners {
 
 /// Open-loop measures of `vad_mini` on held-out moments, by the network that drives; beside it a
 /// vehicle that keeps its velocity, detections that never change, and a straight road.
-class VadMiniJudge {
+class VadMiniValidation {
  public:
-  /// `prior` must outlive the judge.
-  VadMiniJudge(const VadMiniModel& model, const ConstantDetections& prior);
+  /// `prior` must outlive the validation.
+  VadMiniValidation(const VadMiniModel& model, const ConstantDetections& prior);
   void add(const EgoExample& example);
-  const EgoJudgment& judgment() const { return judgment_; }
+  learning::Measures measures() const { return ego_.measures(); }
+  std::string byNetwork() const { return ego_.byNetwork(); }
 
  private:
   VadMiniOutput look(const EgoExample& example);
@@ -23,7 +24,7 @@ class VadMiniJudge {
   VadMiniArchitecture architecture_;
   VadMiniNetwork network_;
   const ConstantDetections& prior_;
-  EgoJudgment judgment_;
+  EgoValidation ego_;
 };
 
 /// Lines that the network is sure of (body frame [m]): score above `least`.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/vad_mini/training/vad_mini_judge.h"
+#include "planners/vad_mini/training/vad_mini_validation.h"
 
 #include <algorithm>
 
@@ -28,10 +28,10 @@ std::vector<BevLine> sureLines(const VadMiniOutput& output, double least) {
   return lines;
 }
 
-VadMiniJudge::VadMiniJudge(const VadMiniModel& model, const ConstantDetections& prior)
+VadMiniValidation::VadMiniValidation(const VadMiniModel& model, const ConstantDetections& prior)
     : architecture_(model.architecture), network_(model), prior_(prior) {}
 
-VadMiniOutput VadMiniJudge::look(const EgoExample& example) {
+VadMiniOutput VadMiniValidation::look(const EgoExample& example) {
   VadMiniOutput output;
   inference::Rows past;
   for (std::size_t i = 0; i < example.looks.size(); ++i) {
@@ -50,12 +50,12 @@ VadMiniOutput VadMiniJudge::look(const EgoExample& example) {
   return output;
 }
 
-void VadMiniJudge::add(const EgoExample& example) {
+void VadMiniValidation::add(const EgoExample& example) {
   const VadMiniOutput output = look(example);
-  judgment_.add(example,
-                {output.plans[static_cast<std::size_t>(example.command)], detectionsOf(output),
-                 sureLines(output, kSureLine)},
-                prior_, architecture_.ego.bev);
+  ego_.add(example,
+           {output.plans[static_cast<std::size_t>(example.command)], detectionsOf(output),
+            sureLines(output, kSureLine)},
+           prior_, architecture_.ego.bev);
 }
 
 }  // namespace cdiff::planners

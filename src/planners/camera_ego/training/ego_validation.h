@@ -40,7 +40,7 @@ class EgoMeasures {
 /// The measures of held-out moments with 95 % intervals, since moments of one network are alike, by
 /// a bootstrap that draws whole networks (expanded percentile: Hesterberg 2015, The American
 /// Statistician 69, 371-386, section 5.3). Fewer than three networks give no intervals.
-class EgoJudgment {
+class EgoValidation {
  public:
   static constexpr std::size_t kReplicates = 1000;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "collection/offset_samples.h"
+#include "collection/displaced_samples.h"
 
 #include <algorithm>
 
@@ -12,7 +12,8 @@
 
 namespace cdiff::collection {
 
-OffsetSamples::OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options)
+DisplacedSamples::DisplacedSamples(const session::SessionSetup& setup,
+                                   const DatasetOptions& options)
     : setup_(setup),
       options_(options),
       model_(setup.options().vehicle),
@@ -28,8 +29,8 @@ traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
   return alike;
 }
 
-bool OffsetSamples::free(const traffic::Vehicle& vehicle,
-                         const traffic::TrafficSnapshot& snapshot) const {
+bool DisplacedSamples::free(const traffic::Vehicle& vehicle,
+                            const traffic::TrafficSnapshot& snapshot) const {
   const geometry::OrientedBox box = vehicle.box();
   for (const Eigen::Vector2d& corner : box.corners()) {
     if (!setup_.drivableArea().contains(corner, vehicle.state.elevation)) return false;
@@ -41,9 +42,9 @@ bool OffsetSamples::free(const traffic::Vehicle& vehicle,
       });
 }
 
-bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
-                              const std::vector<const traffic::TrafficSnapshot*>& future,
-                              traffic::Rollout& rollout) const {
+bool DisplacedSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
+                                 const std::vector<const traffic::TrafficSnapshot*>& future,
+                                 traffic::Rollout& rollout) const {
   const traffic::VehicleState start = vehicle.state;
   planners::LateralController controller(
       setup_.options().planner_options.of<planners::PdmLiteOptions>());
@@ -73,7 +74,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
   return true;
 }
 
-std::optional<DisplacedSample> OffsetSamples::displace(
+std::optional<DisplacedSample> DisplacedSamples::displace(
     const learning::DrivingSample& sample, const SampleSurroundings& around,
     const traffic::TrafficSnapshot& previous,
     const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset) {
