@@ -122,7 +122,10 @@ double latencyOf(const session::TickRecord& record, const std::string& planner) 
 
 SessionBagWriter::SessionBagWriter(const session::SessionSetup& setup, const fs::path& file,
                                    const BagOrigin& origin)
-    : setup_(setup), file_(file, setup.options(), bagTopic), reporter_(setup) {
+    : setup_(setup),
+      file_(file, setup.options(), bagTopic),
+      metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
+      reporter_(setup.options(), [this] { return metrics_.measures(); }) {
   msgs::SessionInfo info = toMsg(setup);
   info.deployment = origin.deployment;
   info.simulator_version = origin.simulator_version;
@@ -144,7 +147,8 @@ void SessionBagWriter::observe(const session::TickRecord& record) {
     values.images = record.images;
   }
   TickMessages messages = makeMessages(values, static_cast<int>(options.max_cbv), setup_.rigs());
-  if (const auto report = reporter_.observe(*record.snapshot, record.selection))
+  const metrics::TickMeasures measures = metrics_.observe(*record.snapshot, record.selection);
+  if (const auto report = reporter_.report(*record.snapshot, measures))
     messages.add(ChannelId::kMetrics, report);
   file_.write(messages);
 }

@@ -97,6 +97,7 @@ class SessionBagWriter : public session::SessionObserver {
 
   const session::SessionSetup& setup_;
   BagFile file_;
+  metrics::SessionMetrics metrics_;
   MetricReporter reporter_;
   std::function<bool(const std::string&)> noisy_;
 };
