@@ -18,6 +18,8 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/node_process.h"
+#include "page/result_writer.h"
+#include "record/result_folder.h"
 #include "ros/ros.h"
 #include "suite/seal.h"
 
@@ -147,8 +149,6 @@ fs::path ownFolder(const session::ScenarioOptions& options) {
           core::timeForFileName());
 }
 
-constexpr const char* kReserve = ".reserve";
-
 /// Whether a file is there that is younger than the launch of this session.
 bool writtenByThisLaunch(const fs::path& path) {
   struct stat file {};
@@ -234,42 +234,6 @@ void writeRefusal(const fs::path& folder) {
   } catch (const core::InputError&) {
     // Another session's folder, or none can be made: what is wrong is printed in any case.
   }
-}
-
-ReserveResult::ReserveResult(const session::SessionSetup& setup, const record::RunFacts& facts,
-                             const fs::path& results)
-    : results_(results),
-      writer_(std::make_unique<page::ResultWriter>(setup, facts, results_.subfolder(kReserve))) {}
-
-ReserveResult::~ReserveResult() {
-  writer_.reset();
-  try {
-    results_.remove({kReserve});
-  } catch (const core::InputError&) {
-    // It stays on the record, and goes with the next session.
-  }
-}
-
-void ReserveResult::observe(const session::TickRecord& record) {
-  try {
-    writer_->observe(record);
-  } catch (const core::Error&) {
-    // The writer has noted it, and the result will say so.
-  }
-}
-
-void ReserveResult::adopt(double wall_seconds) {
-  const fs::path results = results_.path();
-  if (fs::exists(results / "exit_code")) return;
-  writer_->finish(wall_seconds);
-  results_.removeUnfinished();
-  const fs::path reserve = results / kReserve;
-  for (const std::string& name : core::OutputFolder(reserve).names()) {
-    if (fs::exists(fs::symlink_status(reserve / name)))
-      fs::rename(reserve / name, results_.claim(name));
-  }
-  std::cout << writer_->table(results) << std::flush;
-  writeExitCode(results, writer_->exitCode());
 }
 
 }  // namespace cdiff::node_graph

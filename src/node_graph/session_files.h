@@ -4,13 +4,10 @@
 
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "core/output_folder.h"
-#include "page/result_writer.h"
-#include "record/result_folder.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "session/session_request.h"
 
 namespace cdiff::node_graph {
@@ -92,28 +89,5 @@ void enterFolder(const std::string& folder);
 /// in one line, with exit code 3.
 int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,
                          const traffic::Fault& fault);
-
-/// The session's result as the simulator itself saw it, kept aside (RESULTS/.reserve) while the
-/// metrics node writes the real one; put in place when that node cannot finish.
-class ReserveResult {
- public:
-  /// `setup` must outlive the object.
-  ReserveResult(const session::SessionSetup& setup, const record::RunFacts& facts,
-                const std::filesystem::path& results);
-  /// Takes RESULTS/.reserve away.
-  ~ReserveResult();
-  ReserveResult(const ReserveResult&) = delete;
-  ReserveResult& operator=(const ReserveResult&) = delete;
-
-  /// On a full disk it goes on without a trace.
-  void observe(const session::TickRecord& record);
-  /// Finishes the result, moves its files into the result folder, prints its table and writes the
-  /// exit code; nothing where the metrics node has written its own meanwhile (file exit_code).
-  void adopt(double wall_seconds);
-
- private:
-  core::OutputFolder results_;
-  std::unique_ptr<page::ResultWriter> writer_;
-};
 
 }  // namespace cdiff::node_graph
