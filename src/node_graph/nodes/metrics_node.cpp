@@ -79,6 +79,7 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
 
 bool MetricsNode::handle(const Snapshot& message, bool superseded) {
   if (!complete(*message, superseded)) return false;
+  acknowledge(message->tick);  // the next tick is made while this one is measured
   if (!begin_) begin_ = Clock::now();
   const TickRecordView tick(*message, answers(), setup_->network());
   writer_->observe(tick.record());
@@ -86,7 +87,6 @@ bool MetricsNode::handle(const Snapshot& message, bool superseded) {
   note(tick.record().latencies);
   if (const auto report = reporter_->report(tick.snapshot(), writer_->tickMeasures()))
     reports_.publish(report);
-  acknowledge(message->tick);
   show(tick.snapshot(), tick.selection());
   forgetUntil(message->tick);
   last_ = tick.snapshot();
