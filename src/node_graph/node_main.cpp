@@ -7,7 +7,9 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "core/program.h"
 #include "node_graph/lockstep/node_process.h"
@@ -38,12 +40,22 @@ int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
   }
 }
 
+/// The nodes follow the ticks, and none but the metrics node (which stamps /diagnostics) asks ROS
+/// for the time: /clock would wake each of them once more at every tick.
+void initWithoutClock(int argc, char** argv, const std::string& name) {
+  std::string no_clock = "/use_sim_time:=/e2e_cdiff_use_sim_time";
+  std::vector<char*> arguments(argv, argv + argc);
+  if (name != kMetricsNode) arguments.push_back(no_clock.data());
+  int count = static_cast<int>(arguments.size());
+  ros::init(count, arguments.data(), name, ros::init_options::NoSigintHandler);
+}
+
 /// `without_master`, where given, gives the exit code when no ROS master answers.
 int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body,
             const std::function<int()>& without_master = {}) {
   core::prepareProgram();
   StopSignal stop;
-  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+  initWithoutClock(argc, argv, name);
   if (!ros::master::check()) {
     ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch",
               ros::master::getURI().c_str());

@@ -3,63 +3,12 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "core/output_folder.h"
-#include "page/result_writer.h"
-#include "record/result_folder.h"
-#include "session/session_request.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "node_graph/parameters.h"
 
 namespace cdiff::node_graph {
-
-/// A node's private parameters as texts, through one gate: a parameter that the node does not know
-/// is an error, and an empty text means "not given".
-class Parameters {
- public:
-  explicit Parameters(std::map<std::string, std::string> values) : values_(std::move(values)) {}
-  /// The private parameters of this node. Throws InputError for a parameter that is neither text,
-  /// number nor flag.
-  static Parameters ofThisNode();
-  /// Those of another node (name without namespace); none when it has none or the ROS master does
-  /// not answer.
-  static Parameters ofNode(const std::string& node);
-  bool empty() const { return values_.empty(); }
-
-  /// Throws InputError naming the unknown parameter and the nearest known one.
-  void requireKnown(const std::vector<std::string>& known) const;
-  /// Value, or empty when not given.
-  std::string text(const std::string& key) const;
-  /// Throws InputError when the value is not a number above zero.
-  double positive(const std::string& key, double otherwise) const;
-  /// Throws InputError when the value is neither true nor false.
-  bool flag(const std::string& key, bool otherwise) const;
-
- private:
-  static Parameters of(const std::string& full_name);
-
-  std::map<std::string, std::string> values_;
-};
-
-/// Notes on the parameter server that this node has refused the input of its roslaunch, and said
-/// why.
-void noteRefusal();
-/// Whether a node of the same roslaunch has left such a note; removes it.
-bool takeRefusal();
-
-/// The arguments of the roslaunch that started this process, which are the simulator's parameters;
-/// none where it was started otherwise or by a launch file of the user.
-Parameters launchParameters();
-
-/// The session that the parameters scenario, bench2drive, route, network, mode, ego_planner,
-/// cbv_planner, seed and set ask for; crossing_left_turn when they name none.
-session::SessionRequest sessionRequest(const Parameters& parameters);
-
-/// That session's scenario, resolved. Throws InputError as session::resolveRequest does, and for a
-/// route of a sealed suite, which `cdiff evaluate --open-sealed` alone may run.
-session::ScenarioOptions requestedScenario(const Parameters& parameters);
 
 // Where a session of the node graph puts its files, and the result folder that the traffic
 // simulator writes when the metrics node cannot: a session always leaves a result that can be read.
@@ -93,27 +42,10 @@ void enterFolder(const std::string& folder);
 int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,
                          const traffic::Fault& fault);
 
-/// The session's result as the simulator itself saw it, kept aside (RESULTS/.reserve) while the
-/// metrics node writes the real one; put in place when that node cannot finish.
-class ReserveResult {
- public:
-  /// `setup` must outlive the object.
-  ReserveResult(const session::SessionSetup& setup, const record::RunFacts& facts,
-                const std::filesystem::path& results);
-  /// Takes RESULTS/.reserve away.
-  ~ReserveResult();
-  ReserveResult(const ReserveResult&) = delete;
-  ReserveResult& operator=(const ReserveResult&) = delete;
-
-  /// On a full disk it goes on without a trace.
-  void observe(const session::TickRecord& record);
-  /// Finishes the result, moves its files into the result folder, prints its table and writes the
-  /// exit code; nothing where the metrics node has written its own meanwhile (file exit_code).
-  void adopt(double wall_seconds);
-
- private:
-  core::OutputFolder results_;
-  std::unique_ptr<page::ResultWriter> writer_;
-};
+/// Notes on the parameter server that this node has refused the input of its roslaunch, and said
+/// why.
+void noteRefusal();
+/// Whether a node of the same roslaunch has left such a note; removes it.
+bool takeRefusal();
 
 }  // namespace cdiff::node_graph

@@ -7,7 +7,6 @@
 
 #include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/session_metrics.h"
 #include "page/html_report.h"
 #include "record/junit.h"
 #include "record/logs/plan_log.h"
@@ -57,7 +56,7 @@ class ResultWriter::Record {
       return;  // the same tick again, ended from outside
     last_tick_ = snapshot.tick;
     result_.simulated_seconds = snapshot.time;
-    metrics_.observe(snapshot, record.selection);
+    tick_measures_ = metrics_.observe(snapshot, record.selection);
     timeline_.observe(snapshot);
     if (record.actions != nullptr) {
       timeline_.observeAttention(snapshot, *record.actions);
@@ -105,6 +104,9 @@ class ResultWriter::Record {
   void recordFault(const traffic::Fault& fault) {
     result_.faults.insert(result_.faults.begin(), fault);
   }
+
+  const metrics::TickMeasures& tickMeasures() const { return tick_measures_; }
+  metrics::SessionMeasures measures() const { return metrics_.measures(); }
 
   fs::path folder() const { return folder_.path(); }
   const record::SessionResult& result() const { return result_; }
@@ -165,6 +167,7 @@ class ResultWriter::Record {
   core::PendingFile junit_;
   std::unique_ptr<record::TraceWriter> trace_;  ///< null once it could not be written
   metrics::SessionMetrics metrics_;
+  metrics::TickMeasures tick_measures_;
   record::Timeline timeline_;
   record::CbvLog cbv_;
   record::ApproachLog approaches_;
@@ -209,6 +212,10 @@ int ResultWriter::exitCode() const {
                          result.faults.back().source == traffic::kInputFault;
   return bad_input ? 3 : exitCodeOf(outcome);
 }
+
+const metrics::TickMeasures& ResultWriter::tickMeasures() const { return record_->tickMeasures(); }
+
+metrics::SessionMeasures ResultWriter::measures() const { return record_->measures(); }
 
 const record::SessionResult& ResultWriter::result() const { return record_->result(); }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "metrics/session_metrics.h"
 #include "record/session_result.h"
 #include "session/session_observer.h"
 #include "session/session_setup.h"
@@ -45,6 +46,9 @@ class ResultWriter : public session::SessionObserver {
   /// Exit code of `cdiff` for this session: that of its outcome, but 3 when SUMO refused the
   /// session's input meanwhile.
   int exitCode() const;
+  /// Measures of the tick observed last, and of the session so far.
+  const metrics::TickMeasures& tickMeasures() const;
+  metrics::SessionMeasures measures() const;
   /// What was found; complete after `finish`.
   const record::SessionResult& result() const;
 

@@ -21,18 +21,20 @@ ros::Time bagStamp(const ros::Time& stamp) { return std::max(stamp, ros::TIME_MI
 
 }  // namespace
 
-BagFile::BagFile(const fs::path& file, const session::ScenarioOptions& options, Naming naming)
+BagFile::BagFile(const fs::path& file, const session::ScenarioOptions& options, Naming naming,
+                 Content content)
     : folder_(fs::absolute(file).parent_path()),
       name_(file.filename().string()),
       max_cbv_(static_cast<int>(options.max_cbv)),
       reading_{session::VehicleRigs(options), options.simulation_step},
       naming_(std::move(naming)),
+      content_(content),
       bag_(std::make_unique<rosbag::Bag>()) {
   guard([&] {
     core::OutputFolder::requireFree(folder_.path(), {name_});
     folder_.remove({activeName()});
     bag_->open(folder_.claim(activeName()).string(), rosbag::bagmode::Write);
-    bag_->setCompression(rosbag::compression::LZ4);
+    if (content_ == Content::kWhole) bag_->setCompression(rosbag::compression::LZ4);
   });
 }
 
@@ -87,12 +89,12 @@ void BagFile::write(const TickMessages& tick) {
 void BagFile::writeTick(const TickMessages& tick) {
   const auto snapshot = tick.get<msgs::TrafficSnapshot>(ChannelId::kTraffic);
   const ros::Time stamp = bagStamp(snapshot->header.stamp);
+  const bool derives = content_ == Content::kWhole && snapshot->decision_tick;
   for (const Channel& row : channels()) {
     if (row.recorded != Recorded::kTick && row.recorded != Recorded::kDecision) continue;
     for (const Topic& topic : topicsOf(row, max_cbv_, reading_.rigs)) {
       AnyMessage message = tick.find(topic);
-      if (!message && row.derive != nullptr && snapshot->decision_tick)
-        message = row.derive(tick, reading_, topic);
+      if (!message && row.derive != nullptr && derives) message = row.derive(tick, reading_, topic);
       if (message) put(topic, stamp, message);
     }
   }
@@ -122,7 +124,10 @@ double latencyOf(const session::TickRecord& record, const std::string& planner) 
 
 SessionBagWriter::SessionBagWriter(const session::SessionSetup& setup, const fs::path& file,
                                    const BagOrigin& origin)
-    : setup_(setup), file_(file, setup.options(), bagTopic), reporter_(setup) {
+    : setup_(setup),
+      file_(file, setup.options(), bagTopic),
+      metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
+      reporter_(setup.options(), [this] { return metrics_.measures(); }) {
   msgs::SessionInfo info = toMsg(setup);
   info.deployment = origin.deployment;
   info.simulator_version = origin.simulator_version;
@@ -144,7 +149,8 @@ void SessionBagWriter::observe(const session::TickRecord& record) {
     values.images = record.images;
   }
   TickMessages messages = makeMessages(values, static_cast<int>(options.max_cbv), setup_.rigs());
-  if (const auto report = reporter_.observe(*record.snapshot, record.selection))
+  const metrics::TickMeasures measures = metrics_.observe(*record.snapshot, record.selection);
+  if (const auto report = reporter_.report(*record.snapshot, measures))
     messages.add(ChannelId::kMetrics, report);
   file_.write(messages);
 }

@@ -28,10 +28,15 @@ class BagFile {
   /// Name in the bag of a topic whose name is relative.
   using Naming = std::function<std::string(const std::string& topic)>;
 
+  enum class Content {
+    kWhole,       ///< compressed, with what tools need besides the session
+    kSessionOnly  ///< as fast as it goes: what a replay reads
+  };
+
   /// Makes the file's folder. Throws InputError naming the file when it cannot be written, or when
   /// this program did not make the one that is there.
-  BagFile(const std::filesystem::path& file, const session::ScenarioOptions& options,
-          Naming naming);
+  BagFile(const std::filesystem::path& file, const session::ScenarioOptions& options, Naming naming,
+          Content content = Content::kWhole);
   ~BagFile();
   BagFile(const BagFile&) = delete;
   BagFile& operator=(const BagFile&) = delete;
@@ -59,6 +64,7 @@ class BagFile {
   int max_cbv_;  ///< slots
   TickReading reading_;
   Naming naming_;
+  Content content_;
   std::unique_ptr<rosbag::Bag> bag_;
   bool failed_ = false;
 };
@@ -97,6 +103,7 @@ class SessionBagWriter : public session::SessionObserver {
 
   const session::SessionSetup& setup_;
   BagFile file_;
+  metrics::SessionMetrics metrics_;
   MetricReporter reporter_;
   std::function<bool(const std::string&)> noisy_;
 };

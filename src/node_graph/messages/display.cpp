@@ -157,28 +157,27 @@ void Display::mountCameras(const traffic::TrafficSnapshot& snapshot) {
 namespace {
 
 /// Measures of the whole session go out once in a simulated second.
-std::uint64_t decisionsPerReport(const session::SessionSetup& setup) {
-  const double decisions = 1.0 / setup.options().decision_period;
+std::uint64_t decisionsPerReport(const session::ScenarioOptions& options) {
+  const double decisions = 1.0 / options.decision_period;
   return static_cast<std::uint64_t>(std::max(1L, std::lround(decisions)));
 }
 
 }  // namespace
 
-MetricReporter::MetricReporter(const session::SessionSetup& setup)
-    : metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
-      protocol_(setup.options().protocol.preset),
-      decisions_per_report_(decisionsPerReport(setup)) {}
+MetricReporter::MetricReporter(const session::ScenarioOptions& options, SessionSoFar session_so_far)
+    : session_so_far_(std::move(session_so_far)),
+      protocol_(options.protocol.preset),
+      decisions_per_report_(decisionsPerReport(options)) {}
 
-msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnapshot& snapshot,
-                                                     const cbv::CbvSelection* selection) {
-  const metrics::TickMeasures measures = metrics_.observe(snapshot, selection);
+msgs::MetricReport::ConstPtr MetricReporter::report(const traffic::TrafficSnapshot& snapshot,
+                                                    const metrics::TickMeasures& measures) {
   const bool final = snapshot.status != traffic::SessionStatus::kRunning;
   if (!snapshot.decision_tick && !final) return nullptr;
   msgs::MetricReport report = toMsg(measures, snapshot);
   report.protocol = protocol_;
   const bool due = snapshot.decision_tick && decisions_++ % decisions_per_report_ == 0;
   if (due || final) {
-    session_ = metrics_.measures();
+    session_ = session_so_far_();
     report.measures = toMsg(session_);
   }
   return boost::make_shared<const msgs::MetricReport>(report);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -62,18 +63,19 @@ class Display {
 /// simulated second and at the end.
 class MetricReporter {
  public:
-  /// `setup` must outlive the object.
-  explicit MetricReporter(const session::SessionSetup& setup);
+  /// Gives the measures of the session so far.
+  using SessionSoFar = std::function<metrics::SessionMeasures()>;
 
-  /// Call at every tick, in order; nullptr at ticks without a report. `selection` is nullptr
-  /// between decisions.
-  ::e2e_cdiff::MetricReport::ConstPtr observe(const traffic::TrafficSnapshot& snapshot,
-                                              const cbv::CbvSelection* selection);
+  MetricReporter(const session::ScenarioOptions& options, SessionSoFar session_so_far);
+
+  /// Call at every tick, in order, with the tick's measures; nullptr at ticks without a report.
+  ::e2e_cdiff::MetricReport::ConstPtr report(const traffic::TrafficSnapshot& snapshot,
+                                             const metrics::TickMeasures& measures);
   /// All measures as of the last report that held them.
   const metrics::SessionMeasures& session() const { return session_; }
 
  private:
-  metrics::SessionMetrics metrics_;
+  SessionSoFar session_so_far_;
   std::string protocol_;  ///< preset
   metrics::SessionMeasures session_;
   std::uint64_t decisions_per_report_;

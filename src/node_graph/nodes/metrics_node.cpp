@@ -65,7 +65,8 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
   if (setup_->options().video) {
     video_ = std::make_unique<video::SessionVideo>(*setup_, results_);
   }
-  reporter_ = std::make_unique<MetricReporter>(*setup_);
+  reporter_ = std::make_unique<MetricReporter>(setup_->options(),
+                                               [this] { return writer_->measures(); });
   reports_ = advertise<msgs::MetricReport>(ChannelId::kMetrics);
   marker_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMarkers);
   map_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMapMarkers);
@@ -78,14 +79,14 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
 
 bool MetricsNode::handle(const Snapshot& message, bool superseded) {
   if (!complete(*message, superseded)) return false;
+  acknowledge(message->tick);  // the next tick is made while this one is measured
   if (!begin_) begin_ = Clock::now();
   const TickRecordView tick(*message, answers(), setup_->network());
   writer_->observe(tick.record());
   if (video_) video_->observe(tick.record());
   note(tick.record().latencies);
-  if (const auto report = reporter_->observe(tick.snapshot(), tick.record().selection))
+  if (const auto report = reporter_->report(tick.snapshot(), writer_->tickMeasures()))
     reports_.publish(report);
-  acknowledge(message->tick);
   show(tick.snapshot(), tick.selection());
   forgetUntil(message->tick);
   last_ = tick.snapshot();

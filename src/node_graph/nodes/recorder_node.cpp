@@ -35,7 +35,7 @@ std::string RecorderNode::waitingFor() const {
 
 /// Whether the metrics of a tick are here, too.
 bool RecorderNode::measured(const msgs::TrafficSnapshot& snapshot, bool superseded) {
-  if (over() || (superseded && !graph().recordsDecisions())) return true;
+  if (over()) return true;
   const bool final = snapshot.status != msgs::TrafficSnapshot::RUNNING;
   if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) ||
       answers().has(ChannelId::kMetrics, snapshot.tick))
@@ -45,11 +45,13 @@ bool RecorderNode::measured(const msgs::TrafficSnapshot& snapshot, bool supersed
 }
 
 bool RecorderNode::handle(const Snapshot& snapshot, bool superseded) {
-  if (!complete(*snapshot, superseded) || !measured(*snapshot, superseded)) return false;
+  if (!complete(*snapshot, superseded)) return false;
+  if (acknowledged_ != snapshot->tick) acknowledge(snapshot->tick);  // its report may follow
+  acknowledged_ = snapshot->tick;
+  if (!measured(*snapshot, superseded)) return false;
   TickMessages messages = answers().messages(snapshot->tick);
   messages.add(ChannelId::kTraffic, snapshot);
   bag_->write(messages);
-  acknowledge(snapshot->tick);
   forgetUntil(snapshot->tick);
   waiting_since_ = {};
   return true;

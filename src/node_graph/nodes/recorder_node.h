@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "node_graph/bags/session_bag_writer.h"
 #include "node_graph/lockstep/participant.h"
@@ -26,6 +28,7 @@ class RecorderNode : public Observer {
 
   std::unique_ptr<BagFile> bag_;
   bool has_route_ = false;
+  std::optional<std::uint64_t> acknowledged_;  ///< last tick
   ros::WallTime waiting_since_;
 };
 

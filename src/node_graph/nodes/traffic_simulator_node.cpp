@@ -5,19 +5,21 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "node_graph/lockstep/node_process.h"
-#include "node_graph/lockstep/participant.h"
+#include "node_graph/lockstep/lockstep_pacer.h"
+#include "node_graph/lockstep/wall_clock_pacer.h"
 #include "node_graph/messages/message_checks.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
-#include "node_graph/session_files.h"
 #include "node_graph/session_graph.h"
+#include "rosgraph_msgs/Clock.h"
 
 namespace cdiff::node_graph {
 namespace {
 
-namespace fs = std::filesystem;
 using traffic::SessionStatus;
+
+constexpr double kInterruptedPatience =
+    10.0;  // [s] for the observers' files; roslaunch ends us 15 s after the user
 
 std::vector<std::string> knownParameters() {
   return {"scenario",         "bench2drive",    "route",   "network", "mode",   "ego_planner",
@@ -31,8 +33,8 @@ std::vector<std::string> knownParameters() {
 TrafficSimulatorNode::TrafficSimulatorNode(const Parameters& parameters, StopSignal& stop)
     : stop_(stop),
       heartbeat_(node_, parameters.positive("heartbeat_timeout", 10.0)),
-      book_({}),
-      paced_answers_(0.05),
+      participants_({}),
+      watch_(stop_, participants_, connections_),
       display_(node_) {
   parameters.requireKnown(knownParameters());
   limits_ = {parameters.positive("start_timeout", 30.0),
@@ -47,22 +49,35 @@ TrafficSimulatorNode::TrafficSimulatorNode(const Parameters& parameters, StopSig
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
   if (graph_.has(kCameraNode)) display_.showCameras(setup_->rigs());
-  book_ = ParticipantTracker(graph_.participants);
-  answers_ = TickAnswers(options.simulation_step);
-  paced_answers_ = PacedAnswers(options.simulation_step, setup_->ticksPerDecision());
-  decisions_.emplace(options);
+  participants_ = ParticipantTracker(graph_.participants);
+  pacer_ = makePacer();
+}
+
+std::unique_ptr<Pacer> TrafficSimulatorNode::makePacer() {
+  PacerOutput output;
+  output.fault = [this](const auto& source, const auto& text) {
+    world_->recordFault(source, text);
+  };
+  output.record = [this](const auto& record) { records_.publish(record); };
+  output.keep = [this](const auto& snapshot, const auto& answers) {
+    reserve_->keep(snapshot, answers);
+  };
+  output.publish_again = [this](const auto& snapshot) { traffic_.publish(snapshot); };
+  const PacedSession session{*setup_, graph_, participants_, watch_, limits_.answer};
+  if (graph_.paced) return std::make_unique<WallClockPacer>(session, output);
+  return std::make_unique<LockstepPacer>(session, output);
 }
 
 int TrafficSimulatorNode::run() {
-  begin_ = Clock::now();
   if (!startWorld()) return core::ExitCode::kRunTimeError;
   advertise();
   listen();
-  publishSession();
-  if (const auto ending = waitForParticipants()) endSession(*ending);
-  begin_ = Clock::now();
+  session_.publish(shared(sessionInfo(world_->simulatorVersion())));
+  route_.publish(shared(toPathMsg(setup_->egoRoute())));
+  if (const auto end = waitForParticipants()) endSession(*end);
+  pacer_->begin();
   runTicks();
-  waitForObservers();
+  waitForResult();
   reserve_.reset();
   return exitCode();
 }
@@ -70,17 +85,28 @@ int TrafficSimulatorNode::run() {
 bool TrafficSimulatorNode::startWorld() {
   try {
     world_ = std::make_unique<session::World>(*setup_);
-    reserve_ = makeReserve(world_->simulatorVersion());
+    reserve_ = std::make_unique<ResultReserve>(*setup_, sessionInfo(world_->simulatorVersion()));
     return true;
   } catch (const core::SimulatorError& error) {
     ROS_ERROR("%s", error.what());
     traffic::TrafficSnapshot snapshot;
     snapshot.status = SessionStatus::kError;
     snapshot.faults.push_back({0, "simulator", error.what()});
-    reserve_ = makeReserve("unknown");
-    writeResultAlone(snapshot);
+    published_ = shared(toMsg(snapshot));
+    reserve_ = std::make_unique<ResultReserve>(*setup_, sessionInfo("unknown"));
+    writeResultAlone();
     return false;
   }
+}
+
+msgs::SessionInfo TrafficSimulatorNode::sessionInfo(const std::string& simulator_version) const {
+  msgs::SessionInfo info = toMsg(*setup_);
+  info.simulator_version = simulator_version;
+  info.package_version = E2E_CDIFF_VERSION;
+  info.deployment = kDeployment;
+  info.results_folder = results_.string();
+  putGraph(graph_, info);
+  return info;
 }
 
 ros::Publisher TrafficSimulatorNode::advertise(const Topic& topic) {
@@ -106,7 +132,7 @@ void TrafficSimulatorNode::listen() {
         if (ack->kind == msgs::TickAck::FAULT)
           noteFault(ack->node, ack->text);
         else
-          book_.note(*ack);
+          participants_.note(*ack);
       }));
   for (const Channel& row : channels()) {
     if (row.use != Use::kAnswer || !listensTo(row, Party::kSimulator, graph_)) continue;
@@ -127,34 +153,8 @@ std::string TrafficSimulatorNode::takeAnswer(const Topic& topic, const AnyMessag
   if (wrong.empty() && topic.id == ChannelId::kSelection)
     wrong = unusable(*messageAs<msgs::CbvSelection>(message), setup_->network());
   if (!wrong.empty()) return wrong;
-  if (waitsForRollout(topic, message)) return wrong;
-  const bool ego = topic.id == ChannelId::kEgoControl;
-  if (ego) ego_heard_at_ = Clock::now();
-  const std::uint64_t tick =
-      answers_.add(topic, message, ego && paced() ? world_->snapshot().tick : 0);
-  if (topic.id == ChannelId::kSelection) noteArrival(DecisionTracker::kSelection, tick);
-  if (ego || topic.id == ChannelId::kCbvControl) noteArrival(topic.slot, tick);
-  const auto early = early_controls_.find(topic.slot);
-  if (topic.id != ChannelId::kCbvRollout || early == early_controls_.end()) return wrong;
-  const AnyMessage control = early->second;  // which the call below takes out of the map
-  takeAnswer({ChannelId::kCbvControl, topic.slot}, control);
-  return wrong;
-}
-
-/// Where answers may be late, a CBV's control counts with the rollout that is sent before it but on
-/// another connection, so that the next action of a plan is always that of the plan. The newest
-/// control of a slot is kept until then.
-bool TrafficSimulatorNode::waitsForRollout(const Topic& topic, const AnyMessage& message) {
-  if (!paced() || topic.id != ChannelId::kCbvControl) return false;
-  early_controls_.erase(topic.slot);
-  const bool waits =
-      answers_.rollout(topic.slot, messageAs<msgs::ControlAction>(message)->tick) == nullptr;
-  if (waits) early_controls_[topic.slot] = message;
-  return waits;
-}
-
-void TrafficSimulatorNode::noteArrival(int slot, std::uint64_t tick) {
-  if (paced()) decisions_->arrived(slot, tick, secondsSince(begin_));
+  pacer_->take(topic, message);
+  return {};
 }
 
 /// A fault that a node reports is recorded once, whoever else reports it too.
@@ -165,50 +165,93 @@ void TrafficSimulatorNode::noteFault(const std::string& source, const std::strin
   world_->recordFault(source, text);
 }
 
-void TrafficSimulatorNode::publishSession() {
-  msgs::SessionInfo info = toMsg(*setup_);
-  info.simulator_version = world_->simulatorVersion();
-  info.package_version = E2E_CDIFF_VERSION;
-  info.deployment = kDeployment;
-  info.results_folder = results_.string();
-  putGraph(graph_, info);
-  session_.publish(shared(info));
-  route_.publish(shared(toPathMsg(setup_->egoRoute())));
+std::optional<SessionEnd> TrafficSimulatorNode::externalEgoGone() const {
+  if (!graph_.external_ego || !published_) return std::nullopt;
+  const std::string topic = Topic(ChannelId::kEgoControl).name();
+  if (ego_control_.getNumPublishers() > 0 &&
+      !connections_.stoppedListening(gate_.firstSender(topic)))
+    return std::nullopt;
+  return SessionEnd{SessionStatus::kError, "the external ego planner",
+                    "no node publishes on " + topic + " any more"};
 }
 
-std::vector<TrafficSimulatorNode::Missing> TrafficSimulatorNode::missingParticipants() const {
-  std::vector<Missing> missing;
-  if (graph_.external_ego && ego_control_.getNumPublishers() == 0) {
-    missing.push_back(
-        {"the external ego planner", "no node publishes " + Topic(ChannelId::kEgoControl).name() +
-                                         " yet; start yours (external_ego_node is an example)"});
+std::optional<SessionEnd> TrafficSimulatorNode::waitForParticipants() {
+  watch_.setOtherCause([this] { return externalEgoGone(); });
+  const auto missing = [this] {
+    std::vector<Missing> missing = watch_.notReady();
+    if (graph_.external_ego && ego_control_.getNumPublishers() == 0) {
+      missing.insert(missing.begin(), {"the external ego planner",
+                                       "no node publishes " + Topic(ChannelId::kEgoControl).name() +
+                                           " yet; start yours (external_ego_node is an example)"});
+    }
+    return missing;
+  };
+  return watch_.waitFor(missing, limits_.start);
+}
+
+void TrafficSimulatorNode::runTicks() {
+  publishTick();
+  while (world_->snapshot().status == SessionStatus::kRunning) {
+    if (const auto end = pacer_->wait())
+      endSession(*end);
+    else
+      advance();
+    publishTick();
   }
-  for (const std::string& text : book_.notReady())
-    missing.push_back({text.substr(0, text.find(' ')), text});
-  for (const std::string& text : connections_.missing())
-    missing.push_back({text.substr(0, text.find(' ')), text});
-  return missing;
 }
 
-std::optional<TrafficSimulatorNode::Ending> TrafficSimulatorNode::waitForParticipants() {
-  return waitFor([this] { return missingParticipants(); }, limits_.start);
+void TrafficSimulatorNode::publishTick() {
+  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  const bool final = snapshot.status != SessionStatus::kRunning;
+  if (final) pacer_->close();
+  msgs::TrafficSnapshot message = toMsg(snapshot);
+  message.late_answers = pacer_->late();
+  if (final) addTotals(message);
+  rosgraph_msgs::Clock clock;
+  clock.clock = message.header.stamp;
+  published_ = shared(std::move(message));
+  clock_.publish(clock);
+  gate_.setNewestTick(published_->tick, setup_->options().simulation_step);
+  traffic_.publish(published_);
+  display_.publish(snapshot);
+  pacer_->published(published_);
 }
 
-TrafficSimulatorNode::Ending TrafficSimulatorNode::ending(SessionStatus status,
-                                                          const std::string& source,
-                                                          const std::string& text) const {
-  return {status, {world_->snapshot().tick, source, text}};
+/// How much was ignored, in the last snapshot.
+void TrafficSimulatorNode::addTotals(msgs::TrafficSnapshot& message) const {
+  for (const std::string& text : gate_.totals()) {
+    message.faults.emplace_back();
+    message.faults.back().tick = message.tick;
+    message.faults.back().source = kTrafficSimulatorNode;
+    message.faults.back().text = text;
+  }
 }
 
-void TrafficSimulatorNode::endSession(const Ending& ending) {
-  ROS_ERROR_COND(ending.status == SessionStatus::kError, "%s: %s", ending.fault.source.c_str(),
-                 ending.fault.text.c_str());
-  world_->end(ending.status, ending.fault);
+/// An ego that came to stand after a node was last heard may brake for want of that node: it is not
+/// blocked before the node answers again; otherwise its silence ends the session.
+void TrafficSimulatorNode::advance() {
+  const TickInput input = pacer_->advance();
+  const std::optional<double> since = world_->egoStandsSince();
+  world_->withholdBlocked(since && pacer_->silentFor(world_->snapshot().time - *since));
+  world_->advance(input.selection ? &*input.selection : nullptr, input.actions);
 }
 
-std::unique_ptr<ReserveResult> TrafficSimulatorNode::makeReserve(const std::string& version) const {
-  return std::make_unique<ReserveResult>(*setup_, record::RunFacts{kDeployment, version, !paced()},
-                                         results_);
+void TrafficSimulatorNode::endSession(const SessionEnd& end) {
+  ROS_ERROR_COND(end.status == SessionStatus::kError, "%s: %s", end.source.c_str(),
+                 end.text.c_str());
+  world_->end(end.status, {world_->snapshot().tick, end.source, end.text});
+}
+
+void TrafficSimulatorNode::waitForResult() {
+  const bool interrupted = world_->snapshot().status == SessionStatus::kInterrupted;
+  watch_.waitForObservers(interrupted ? kInterruptedPatience : limits_.answer);
+  if (!participants_.finished(kMetricsNode)) writeResultAlone();
+}
+
+void TrafficSimulatorNode::writeResultAlone() {
+  reserve_->adopt(published_, pacer_->elapsed());
+  ROS_WARN("The metrics node did not finish; the result is the simulator's own, in %s",
+           results_.c_str());
 }
 
 int runTrafficSimulator(StopSignal& stop) {

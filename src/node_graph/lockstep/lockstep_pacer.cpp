@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "node_graph/lockstep/lockstep_pacer.h"
+
+#include "node_graph/lockstep/decision_tracker.h"
+#include "node_graph/messages/session_conversions.h"
+
+namespace cdiff::node_graph {
+namespace {
+
+constexpr double kSendAgainAfter =
+    1.0;  // [s] of wall time without an answer of an external ego planner
+
+}  // namespace
+
+void LockstepPacer::published(const Snapshot& snapshot) {
+  published_ = snapshot;
+  published_at_ = Clock::now();
+  recorded_ = !snapshot->decision_tick;
+}
+
+std::vector<Missing> LockstepPacer::missingAnswers() const {
+  std::vector<Missing> missing;
+  for (const Topic& topic : answers_.missing(*published_)) {
+    const std::string node = answererOf(topic, session_.graph);
+    missing.push_back(
+        {node, topic.name() + " for tick " + std::to_string(published_->tick) + " (" + node + ")"});
+  }
+  return missing;
+}
+
+std::vector<Missing> LockstepPacer::missingAtTick() const {
+  std::vector<Missing> missing = missingAnswers();
+  for (const std::string& node : session_.participants.notAcknowledged(published_->tick)) {
+    missing.push_back(
+        {node, node + "'s acknowledgement of tick " + std::to_string(published_->tick)});
+  }
+  return missing;
+}
+
+std::optional<SessionEnd> LockstepPacer::wait() {
+  const auto again = [this] { sendAgainForLateListener(); };
+  if (session_.graph.external_ego && !recorded_) {  // observers wait for the record
+    if (auto cause = session_.watch.waitFor([this] { return missingAnswers(); },
+                                            session_.answer_limit, again))
+      return cause;
+    close();
+  }
+  if (auto cause =
+          session_.watch.waitFor([this] { return missingAtTick(); }, session_.answer_limit, again))
+    return cause;
+  if (options().at_most <= 0.0) return std::nullopt;
+  return session_.watch.sleepUntil(wallTime(published_->time / options().at_most));
+}
+
+/// A node of the user may connect while the first snapshot is sent; it gets the same snapshot
+/// again.
+void LockstepPacer::sendAgainForLateListener() {
+  if (!session_.graph.external_ego || secondsSince(published_at_) < kSendAgainAfter) return;
+  if (answers_.has(ChannelId::kEgoControl, published_->tick)) return;
+  output_.publish_again(published_);
+  published_at_ = Clock::now();
+}
+
+TickInput LockstepPacer::advance() {
+  output_.keep(published_, answers_);
+  if (!published_->decision_tick) return {};
+  const std::vector<Answer> answers = answers_.answers(*published_);
+  reportFaults(answers);
+  TickInput input{fromMsg(*answers_.selection(published_->tick), session_.setup.network()),
+                  actionsOf(answers)};
+  answers_.forgetBefore(published_->tick);
+  return input;
+}
+
+/// The session goes on, or ends, with what has arrived.
+void LockstepPacer::close() {
+  if (session_.graph.external_ego && !recorded_)
+    publishRecord(
+        boost::make_shared<const msgs::DecisionRecord>(punctualRecord(*published_, answers_)));
+  recorded_ = true;
+}
+
+}  // namespace cdiff::node_graph

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "node_graph/lockstep/pacer.h"
+
+namespace cdiff::node_graph {
+
+/// The world goes on when every answer and every acknowledgement that the tick needs is here,
+/// however long that takes within the limit; with `at_most` not earlier than that pace allows.
+class LockstepPacer : public Pacer {
+ public:
+  using Pacer::Pacer;
+
+  void published(const Snapshot& snapshot) override;
+  std::optional<SessionEnd> wait() override;
+  TickInput advance() override;
+  void close() override;
+
+ private:
+  std::vector<Missing> missingAnswers() const;
+  std::vector<Missing> missingAtTick() const;
+  void sendAgainForLateListener();
+
+  Clock::time_point published_at_;
+  bool recorded_ = true;  ///< whether the record of the current decision was published
+};
+
+}  // namespace cdiff::node_graph

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/output_folder.h"
+#include "e2e_cdiff/SessionInfo.h"
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "node_graph/bags/session_bag_writer.h"
+#include "node_graph/lockstep/tick_answers.h"
+#include "record/session_result.h"
+#include "session/session_setup.h"
+
+namespace cdiff::node_graph {
+
+/// What the traffic simulator keeps aside while the metrics node writes the session's result: the
+/// messages of each tick, as a bag in RESULTS/.reserve. Where that node cannot finish, the bag is
+/// replayed into the result. Nothing is measured before that.
+class ResultReserve {
+ public:
+  /// `setup` must outlive the object; `info` names the result folder. Throws InputError where the
+  /// folder holds a .reserve that this program did not make.
+  ResultReserve(const session::SessionSetup& setup, const ::e2e_cdiff::SessionInfo& info);
+  /// Takes RESULTS/.reserve away.
+  ~ResultReserve();
+  ResultReserve(const ResultReserve&) = delete;
+  ResultReserve& operator=(const ResultReserve&) = delete;
+
+  /// Keeps a tick with the answers to it. From a full disk on the ticks are given up, and their
+  /// room is free for the result.
+  void keep(const ::e2e_cdiff::TrafficSnapshot::ConstPtr& snapshot, const TickAnswers& answers);
+  /// Writes the result of what was kept and of the session's end, prints its table and writes the
+  /// exit code; nothing where the metrics node has written its own meanwhile (file exit_code).
+  /// Returns whether it wrote. Throws InputError when not even a summary can be written.
+  bool adopt(const ::e2e_cdiff::TrafficSnapshot::ConstPtr& end, double wall_seconds);
+
+ private:
+  void giveUp(const std::string& why);
+  int replay(double wall_seconds);
+  int writeEnd(const ::e2e_cdiff::TrafficSnapshot& end, double wall_seconds);
+
+  const session::SessionSetup& setup_;
+  record::RunFacts facts_;
+  core::OutputFolder results_;
+  std::unique_ptr<BagFile> bag_;  ///< null once it was given up
+  std::string lost_;              ///< why it was
+};
+
+}  // namespace cdiff::node_graph

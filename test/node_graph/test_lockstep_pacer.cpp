@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "node_graph/lockstep/lockstep_pacer.h"
+#include "node_graph/pacer_fixture.h"
+
+namespace cdiff::node_graph {
+namespace {
+
+using Ticks = std::vector<std::uint64_t>;
+
+class LockstepPacerTest : public test::PacerFixture {};
+
+TEST_F(LockstepPacerTest, GoesOnWhenAnswersAndAcknowledgementsAreHere) {
+  LockstepPacer& pacer = make<LockstepPacer>(test::sampleOptions());
+  pacer.published(snapshotAt(4));
+  select(4);
+  control(4, kEgoSlot, "ego", 0.25);
+  auto end = pacer.wait();
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->source, kMetricsNode);
+  EXPECT_NE(end->text.find("metrics_node's acknowledgement of tick 4"), std::string::npos)
+      << end->text;
+  acknowledge(4);
+  EXPECT_FALSE(pacer.wait());
+  const TickInput input = pacer.advance();
+  ASSERT_TRUE(input.selection);
+  EXPECT_EQ(input.selection->tick, 4U);
+  ASSERT_EQ(input.actions.size(), 1U);
+  EXPECT_EQ(input.actions[0].action.throttle, 0.25);
+  EXPECT_EQ(kept_, Ticks{4});
+}
+
+TEST_F(LockstepPacerTest, NamesTheAnswerThatDoesNotCome) {
+  LockstepPacer& pacer = make<LockstepPacer>(test::sampleOptions());
+  pacer.published(snapshotAt(4));
+  select(4);
+  const auto end = pacer.wait();
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->source, kEgoPlannerNode);
+  EXPECT_NE(end->text.find("ego/control for tick 4 (ego_planner_node)"), std::string::npos)
+      << end->text;
+}
+
+TEST_F(LockstepPacerTest, NothingMovesTheWorldBetweenDecisions) {
+  LockstepPacer& pacer = make<LockstepPacer>(test::sampleOptions());
+  pacer.published(snapshotAt(5));
+  acknowledge(5);
+  EXPECT_FALSE(pacer.wait());
+  const TickInput input = pacer.advance();
+  EXPECT_FALSE(input.selection);
+  EXPECT_TRUE(input.actions.empty());
+  EXPECT_EQ(kept_, Ticks{5});
+}
+
+TEST_F(LockstepPacerTest, RecordsADecisionOfAnExternalEgoBeforeObserversAcknowledge) {
+  graph_.external_ego = true;
+  LockstepPacer& pacer = make<LockstepPacer>(test::sampleOptions());
+  pacer.published(snapshotAt(4));
+  select(4);
+  control(4, kEgoSlot, "ego", 0.25);
+  EXPECT_TRUE(pacer.wait());
+  EXPECT_EQ(records_, Ticks{4});
+  pacer.close();
+  EXPECT_EQ(records_, Ticks{4});
+}
+
+TEST_F(LockstepPacerTest, SendsTheSnapshotAgainToAnExternalEgoThatIsLate) {
+  limit_ = 1.3;
+  graph_.external_ego = true;
+  LockstepPacer& pacer = make<LockstepPacer>(test::sampleOptions());
+  pacer.published(snapshotAt(4));
+  select(4);
+  EXPECT_TRUE(pacer.wait());
+  EXPECT_EQ(again_, Ticks{4});
+}
+
+TEST_F(LockstepPacerTest, SleepsWhereItShallNotRunFaster) {
+  session::ScenarioOptions options = test::sampleOptions();
+  options.at_most = 2.0;
+  LockstepPacer& pacer = make<LockstepPacer>(options);
+  pacer.published(snapshotAt(5));  // 0.25 s
+  acknowledge(5);
+  EXPECT_FALSE(pacer.wait());
+  EXPECT_GE(pacer.elapsed(), 0.125);
+}
+
+}  // namespace
+}  // namespace cdiff::node_graph
