@@ -46,6 +46,21 @@ TEST(Navigation, CommandsATurnFromFiftyMetersBeforeToItsEnd) {
   EXPECT_NEAR(navigation.next(1e6).arc_length, turn.route.length(), 1e-9);
 }
 
+/// 80 m along x, 20 m in a junction and 80 m on, turned by an angle [deg].
+RoadCommand commandOfATurn(double degrees) {
+  const double turn = core::degreesToRadians(degrees);
+  const Eigen::Vector2d middle =
+      Eigen::Vector2d(80.0, 0.0) + 20.0 * geometry::direction(0.5 * turn);
+  const Eigen::Vector2d last = middle + 80.0 * geometry::direction(turn);
+  const map::RoadNetwork network = testing::makeNetwork(
+      {{"in", testing::straight(0.0, 0.0, 80.0, 0.0)},
+       {":j", testing::straight(80.0, 0.0, middle.x(), middle.y()), 13.89, true},
+       {"out", testing::straight(middle.x(), middle.y(), last.x(), last.y())}},
+      {{"in", "out", "", "s"}});
+  const map::Route route = testing::routeAlong(network, {"in", ":j", "out"});
+  return Navigation(network, route).next(70.0).command;
+}
+
 TEST(Navigation, TurnsOfThirtyDegreesHaveASide) {
   EXPECT_EQ(commandOfATurn(35.0), RoadCommand::kLeft);
   EXPECT_EQ(commandOfATurn(-35.0), RoadCommand::kRight);
