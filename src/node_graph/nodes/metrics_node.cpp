@@ -65,8 +65,8 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
   if (setup_->options().video) {
     video_ = std::make_unique<video::SessionVideo>(*setup_, results_);
   }
-  reporter_ = std::make_unique<MetricReporter>(setup_->options(),
-                                               [this] { return writer_->measures(); });
+  reporter_ =
+      std::make_unique<MetricReporter>(setup_->options(), [this] { return writer_->measures(); });
   reports_ = advertise<msgs::MetricReport>(ChannelId::kMetrics);
   marker_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMarkers);
   map_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMapMarkers);

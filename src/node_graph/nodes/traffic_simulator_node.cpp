@@ -249,7 +249,7 @@ void TrafficSimulatorNode::waitForResult() {
 }
 
 void TrafficSimulatorNode::writeResultAlone() {
-  reserve_->adopt(published_, pacer_->elapsed());
+  if (!reserve_->adopt(published_, pacer_->elapsed())) return;
   ROS_WARN("The metrics node did not finish; the result is the simulator's own, in %s",
            results_.c_str());
 }
