@@ -66,7 +66,7 @@ std::vector<double> decisionTimes(const planning::PlannerDescriptor& descriptor)
   const auto planner = cbv ? scene.setup().makeCbvPlanner() : scene.setup().makeEgoPlanner();
   std::vector<double> times;
   for (int i = 0; i < kWarmUp + kDecisions; ++i) {
-    scene.advance(planner->needsImages());
+    scene.advance(descriptor.sees());
     const auto tasks = cbv ? scene.tasks(kCbv, 1) : scene.egoTask();
     std::string fault;
     const double seconds =

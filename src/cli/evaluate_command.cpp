@@ -9,7 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/progress.h"
-#include "cli/route_table.h"
+#include "cli/bench2drive_table.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/program.h"

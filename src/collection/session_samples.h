@@ -19,7 +19,7 @@
 
 namespace cdiff::collection {
 
-// Training samples from a session that was recorded.
+// Training samples from a session that the collection drove, just now or from its bag.
 
 /// A stretch during which one vehicle follows one route: vehicle and the tick it was selected at.
 using DriveKey = std::pair<std::string, std::uint64_t>;

@@ -90,7 +90,7 @@ TEST(PacedAnswers, TakesAVehicleOverWhenItsFirstActionHasCome) {
 /// A session in which one planner answers late.
 class LateSession : public testing::Test {
  protected:
-  LateSession() : book_(options()), paced_(0.05) {}
+  LateSession() : tracker_(options()), paced_(0.05) {}
   static session::ScenarioOptions options() {
     session::ScenarioOptions options;
     options.ego_planner = "sample";
@@ -102,21 +102,21 @@ class LateSession : public testing::Test {
       answers_.add(ChannelId::kSelection, selectionFor(tick, 1, "bg_7"));
     if (slot == -1) answers_.add(ChannelId::kEgoControl, controlFor(tick, -1, "ego"));
     if (slot == 1) answers_.add({ChannelId::kCbvControl, 1}, controlFor(tick, 1, "bg_7"));
-    book_.arrived(slot, tick, now);
+    tracker_.arrived(slot, tick, now);
   }
   std::vector<msgs::DecisionRecord::ConstPtr> end(std::uint64_t tick, double now) {
     const auto snapshot = snapshotAt(tick);
     const auto taken = paced_.selection(*snapshot, answers_);
-    book_.ended(tick, paced_.actions(*snapshot, taken, answers_), now);
-    return book_.settle(answers_, tick, false);
+    tracker_.ended(tick, paced_.actions(*snapshot, taken, answers_), now);
+    return tracker_.settle(answers_, tick, false);
   }
-  DecisionTracker book_;
+  DecisionTracker tracker_;
   PacedAnswers paced_;
   TickAnswers answers_;
 };
 
 TEST_F(LateSession, RecordSaysWhatDroveAndHowLateTheAnswerCame) {
-  book_.open(snapshotAt(4));
+  tracker_.open(snapshotAt(4));
   arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   EXPECT_TRUE(end(4, 10.05).empty());  // the CBV's answer is awaited
@@ -136,19 +136,19 @@ TEST_F(LateSession, RecordSaysWhatDroveAndHowLateTheAnswerCame) {
   EXPECT_TRUE(cbv.answer_drove);          // from tick 5 on
   EXPECT_NEAR(cbv.lateness, 0.03, 1e-9);  // 10.08 - 10.05
   EXPECT_EQ(cbv.answer.planner_latency_ms, 1.5);
-  EXPECT_EQ(book_.late(), 1U);
+  EXPECT_EQ(tracker_.late(), 1U);
   const auto texts = latenessTexts(*records[0]);
   ASSERT_EQ(texts.size(), 1U);
   EXPECT_NE(texts.at("cbv:sample").find("came 0.030 s after its time"), std::string::npos);
 }
 
 TEST_F(LateSession, DecisionThatAPlannerLeftOutIsSettledByItsNextAnswer) {
-  book_.open(snapshotAt(4));
+  tracker_.open(snapshotAt(4));
   arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   end(4, 10.05);
   end(5, 10.10);
-  book_.open(snapshotAt(6));
+  tracker_.open(snapshotAt(6));
   arrive(DecisionTracker::kSelection, 6, 10.11);
   arrive(-1, 6, 10.11);
   arrive(1, 6, 10.12);
@@ -157,11 +157,11 @@ TEST_F(LateSession, DecisionThatAPlannerLeftOutIsSettledByItsNextAnswer) {
   EXPECT_FALSE(records[0]->vehicles[1].answered);
   EXPECT_EQ(records[0]->vehicles[1].answer.planner, "cbv:sample");
   EXPECT_EQ(records[1]->vehicles[1].driven_by, DecidedVehicle::ANSWER);
-  EXPECT_EQ(book_.late(), 1U);
+  EXPECT_EQ(tracker_.late(), 1U);
 }
 
 TEST_F(LateSession, AnswerThatIsTooOldToDriveIsTimedButNoActionThatDrove) {
-  book_.open(snapshotAt(4));
+  tracker_.open(snapshotAt(4));
   arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   end(4, 10.05);
@@ -178,7 +178,7 @@ TEST_F(LateSession, AnswerThatIsTooOldToDriveIsTimedButNoActionThatDrove) {
 }
 
 TEST_F(LateSession, SilentPlannerIsGivenUpAfterTenSeconds) {
-  book_.open(snapshotAt(4));
+  tracker_.open(snapshotAt(4));
   arrive(DecisionTracker::kSelection, 4, 0.01);
   arrive(1, 4, 0.02);
   for (std::uint64_t tick = 4; tick <= 204; ++tick) EXPECT_TRUE(end(tick, 0.05).empty()) << tick;
@@ -192,7 +192,7 @@ TEST_F(LateSession, RecordSaysWhatObserversWaitFor) {
   paced.paced = true;
   TickAnswers observed(0.05, awaitedBy(Party::kMetrics, paced));
   EXPECT_EQ(namesOf(observed.missing(*snapshotAt(4))), std::vector<std::string>{"decision_record"});
-  book_.open(snapshotAt(4));
+  tracker_.open(snapshotAt(4));
   arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   arrive(1, 4, 10.02);

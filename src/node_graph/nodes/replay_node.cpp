@@ -70,7 +70,7 @@ ReplayNode::ReplayNode(const Parameters& parameters, StopSignal& stop)
       bag_(bagOf(parameters)),
       session_(bag_),
       graph_(replayGraph(session_.graph())),
-      book_(std::vector<std::string>{kMetricsNode}),
+      participants_(std::vector<std::string>{kMetricsNode}),
       heartbeat_(node_, kHeartbeatTimeout),
       display_(node_) {
   results_ = folderOf(parameters, session_.setup().options());
@@ -101,7 +101,7 @@ void ReplayNode::advertise() {
   gate_.setReport([](const std::string& text) { ROS_WARN("%s", text.c_str()); });
   acks_ = gate_.subscribe<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
                                          {siblingNode(kMetricsNode)},
-                                         [this](const auto& ack) { book_.note(*ack); });
+                                         [this](const auto& ack) { participants_.note(*ack); });
 }
 
 void ReplayNode::publishSession() {
@@ -147,9 +147,9 @@ void ReplayNode::publishPlans(const msgs::TrafficSnapshot& snapshot) {
 }
 
 bool ReplayNode::disturbed() {
-  if (book_.error()) ROS_ERROR("%s: %s", book_.error()->node.c_str(), book_.error()->text.c_str());
+  if (participants_.error()) ROS_ERROR("%s: %s", participants_.error()->node.c_str(), participants_.error()->text.c_str());
   if (connections_.hasLeft(kMetricsNode)) ROS_ERROR("the metrics node left the replay");
-  failed_ = book_.error() || connections_.hasLeft(kMetricsNode);
+  failed_ = participants_.error() || connections_.hasLeft(kMetricsNode);
   return failed_ || stop_.raised() || !ros::ok();
 }
 
@@ -178,7 +178,7 @@ void ReplayNode::waitUntilDue(double time) {
 
 std::vector<std::string> ReplayNode::notReady() const {
   std::vector<std::string> texts = connections_.missing();
-  for (const std::string& text : book_.notReady()) texts.push_back(text);
+  for (const std::string& text : participants_.notReady()) texts.push_back(text);
   return texts;
 }
 
@@ -211,7 +211,7 @@ bool ReplayNode::waitForMetrics(const msgs::TrafficSnapshot& snapshot) {
     while (!disturbed() && secondsSince(begin) < kStraggle) spin(kStraggle);
     return !disturbed();
   }
-  return waitFor([&] { return last ? book_.notFinished() : book_.notAcknowledged(snapshot.tick); });
+  return waitFor([&] { return last ? participants_.notFinished() : participants_.notAcknowledged(snapshot.tick); });
 }
 
 /// A last snapshot, so that the metrics node writes the result of the ticks replayed so far.
@@ -222,7 +222,7 @@ void ReplayNode::publishInterruption() {
                  traffic::SessionStatus::kInterrupted, {0, "user", "the replay was interrupted"});
   publishTick(boost::make_shared<const msgs::TrafficSnapshot>(toMsg(end)));
   const Clock::time_point begin = Clock::now();
-  while (!book_.notFinished().empty() && ros::ok() && secondsSince(begin) < kReplayFarewell)
+  while (!participants_.notFinished().empty() && ros::ok() && secondsSince(begin) < kReplayFarewell)
     spin(kSpinPeriod);
 }
 

@@ -61,7 +61,7 @@ class ReplayNode {
   std::unique_ptr<record::ResultFolder> folder_;  ///< holds it for us and the metrics node
   RecordedSession session_;
   SessionGraph graph_;  ///< of the replay: without recorder
-  ParticipantTracker book_;
+  ParticipantTracker participants_;
   MessageGate gate_;
   Connections connections_;
   ros::NodeHandle node_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "cli/route_table.h"
+#include "cli/bench2drive_table.h"
 
 #include <algorithm>
 #include <map>
