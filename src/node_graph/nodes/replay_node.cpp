@@ -147,7 +147,8 @@ void ReplayNode::publishPlans(const msgs::TrafficSnapshot& snapshot) {
 }
 
 bool ReplayNode::disturbed() {
-  if (participants_.error()) ROS_ERROR("%s: %s", participants_.error()->node.c_str(), participants_.error()->text.c_str());
+  if (participants_.error())
+    ROS_ERROR("%s: %s", participants_.error()->node.c_str(), participants_.error()->text.c_str());
   if (connections_.hasLeft(kMetricsNode)) ROS_ERROR("the metrics node left the replay");
   failed_ = participants_.error() || connections_.hasLeft(kMetricsNode);
   return failed_ || stop_.raised() || !ros::ok();
@@ -211,7 +212,9 @@ bool ReplayNode::waitForMetrics(const msgs::TrafficSnapshot& snapshot) {
     while (!disturbed() && secondsSince(begin) < kStraggle) spin(kStraggle);
     return !disturbed();
   }
-  return waitFor([&] { return last ? participants_.notFinished() : participants_.notAcknowledged(snapshot.tick); });
+  return waitFor([&] {
+    return last ? participants_.notFinished() : participants_.notAcknowledged(snapshot.tick);
+  });
 }
 
 /// A last snapshot, so that the metrics node writes the result of the ticks replayed so far.
