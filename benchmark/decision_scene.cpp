@@ -80,14 +80,18 @@ std::vector<planning::PlanningTask> DecisionScene::tasks(int first, int count) c
   std::vector<planning::PlanningTask> tasks;
   for (int i = first; i < first + count; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    tasks.push_back({i, &snapshot_.vehicles[index + 1], &setup_.egoRoute(), 8.0, &images_[index]});
+    tasks.push_back({i,
+                     &snapshot_.vehicles[index + 1],
+                     &setup_.egoRoute(),
+                     8.0,
+                     {&setup_.rigs().of(i), {&images_[index]}}});
   }
   return tasks;
 }
 
 std::vector<planning::PlanningTask> DecisionScene::egoTask() const {
   planning::PlanningTask task{traffic::kEgoSlot, &snapshot_.vehicles.front(), &setup_.egoRoute(),
-                              8.0, &ego_images_.front()};
+                              8.0};
   task.views.rig = &setup_.rigs().of(traffic::kEgoSlot);
   for (const traffic::CameraImage& image : ego_images_) task.views.images.push_back(&image);
   return {task};
