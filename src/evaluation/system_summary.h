@@ -12,7 +12,7 @@
 namespace cdiff::evaluation {
 
 // What the systems of a batch did over all routes: each figure with its 95 % interval, counts with
-// their km (docs/evaluation.md).
+// their km (docs/statistics.md).
 
 /// A list with an object per system: factors, runs, routes, seeds and all measures.
 nlohmann::ordered_json systemsJson(const std::vector<System>& systems);

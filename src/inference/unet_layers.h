@@ -10,8 +10,9 @@
 
 namespace cdiff::inference {
 
-// Layers of the denoiser's U-Net (docs/network.md), each with its forward pass and its backward
-// pass (the product of its transposed Jacobian with a gradient). Layers are joined by variables.
+// Layers of the denoiser's U-Net (docs/neural_network.md), each with its forward pass and its
+// backward pass (the product of its transposed Jacobian with a gradient). Layers are joined by
+// variables.
 
 using Tensors = std::map<std::string, Tensor>;
 

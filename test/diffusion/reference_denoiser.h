@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The denoiser of docs/network.md, slow and in double, straight from the page; and random models
-/// to compare with.
+/// The denoiser of docs/neural_network.md, slow and in double, straight from the page; and random
+/// models to compare with.
 #pragma once
 
 #include <vector>

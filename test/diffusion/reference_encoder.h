@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The image encoder of docs/network.md once more, in double precision and without any care for
-/// speed; what the fast one is compared with.
+/// The image encoder of docs/neural_network.md once more, in double precision and without any care
+/// for speed; what the fast one is compared with.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct PlainMap {
   }
 };
 
-/// docs/network.md written down once more, without any care for speed.
+/// docs/neural_network.md written down once more, without any care for speed.
 class ReferenceEncoder {
  public:
   explicit ReferenceEncoder(const Model& model) : model_(model) {}

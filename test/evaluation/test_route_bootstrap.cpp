@@ -141,7 +141,7 @@ double coverage(double truth,
 
 TEST(RouteBootstrap, HoldsRareFailuresLessOften) {
   // Normal routes: 950 of 1,000 with a standard deviation of 6.9. 0 on 80 % of the routes and
-  // exponential with mean 10 on the others (mean 2): fewer, which docs/evaluation.md says.
+  // exponential with mean 10 on the others (mean 2): fewer, which docs/statistics.md says.
   const double normal = coverage(0.0, [](const auto& stream, const auto& key, std::uint32_t i) {
     return stream.normal(key, i);
   });

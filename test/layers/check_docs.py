@@ -5,7 +5,7 @@
 
 No text of the tree spells one of BRITISH. Each file and folder that a document names exists; each row of docs/glossary.md and docs/notation.md names identifiers that stand in
 the files of the row; no mark such as @RATE@ waits for its figure; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py;
-docs/images/layers.svg is what scripts/draw_layers makes; package.xml, CMakeLists.txt, CITATION.cff and the newest release in CHANGELOG.rst have one version.
+docs/images/layers.svg is what scripts/draw_layers makes, and the pictures of scripts/draw_pictures are what it makes; package.xml, CMakeLists.txt, CITATION.cff and the newest release in CHANGELOG.rst have one version.
 """
 import re
 import subprocess
@@ -164,9 +164,11 @@ def unfilled(source):
 
 
 def wrong_picture(source):
-    """What scripts/draw_layers says of the picture of the layers."""
-    done = subprocess.run(["/usr/bin/python3", source / "scripts/draw_layers", "--check"], capture_output=True, text=True, check=False)
-    return (done.stdout + done.stderr).splitlines() if done.returncode != 0 else []
+    """What the scripts that draw pictures say of theirs."""
+    for script in ("draw_layers", "draw_pictures"):
+        done = subprocess.run(["/usr/bin/python3", source / "scripts" / script, "--check"], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            yield from (done.stdout + done.stderr).splitlines()
 
 
 def wrong_release(source):
@@ -225,7 +227,7 @@ def self_test():
 
 def main():
     source, result = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
-    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))), ("picture", wrong_picture(source)),
+    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))), ("picture", list(wrong_picture(source))),
                ("release", list(wrong_release(source))),
                ("spelling", list(british_words(source))), ("unfilled", list(unfilled(source)))]
     results += [(Path(table).stem, list(wrong_identifiers(source, table))) for table in TABLES]

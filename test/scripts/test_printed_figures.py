@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Run the sessions of docs/figures.md, "Ten sessions, number by number", and compare every figure printed there.
+"""Run the sessions of docs/reproduce.md, "Ten sessions, number by number", and compare every figure printed there.
 
     test_printed_figures.py CDIFF SOURCE RESULT.xml
     test_printed_figures.py CDIFF SOURCE --write       puts this machine's figures into the section
@@ -86,13 +86,13 @@ def wrong_figures(columns, figures, run, exact):
     for column, figure in zip(columns, figures):
         value, printed = value_at(run["summary"], column["key"]), printed_in(run["output"], column["line"])
         if value is None or printed is None:
-            wrong.append(f"{column['name']}: {figure} stands in docs/figures.md, the run has {value} and prints {printed}")
+            wrong.append(f"{column['name']}: {figure} stands in docs/reproduce.md, the run has {value} and prints {printed}")
             continue
         decimals = len(figure.partition(".")[2])
         same = f"{value:.{decimals}f}" == figure == printed
         allowed = within(figure, float(value), column["allowed"]) and printed == f"{value:.{decimals}f}"
         if not (same if exact else allowed):
-            wrong.append(f"{column['name']}: {figure} stands in docs/figures.md, {column['key']} is {value}, printed as {printed}")
+            wrong.append(f"{column['name']}: {figure} stands in docs/reproduce.md, {column['key']} is {value}, printed as {printed}")
     return wrong
 
 
@@ -168,7 +168,7 @@ def compared(table, row, cdiff, folder, altered):
 
 
 def test(cdiff, source, result):
-    table = Table((source / "docs/figures.md").read_text())
+    table = Table((source / "docs/reproduce.md").read_text())
     cases = [("self_test", 0.0, "\n".join(self_test()) or None), ("table", 0.0, "\n".join(table.faults()) or None)]
     altered, noted = [], []
     with tempfile.TemporaryDirectory() as folder:
@@ -176,7 +176,7 @@ def test(cdiff, source, result):
             begin = time.monotonic()
             found, others = compared(table, row, cdiff, folder, altered)
             if others != noted:
-                print(f"this machine has {'; '.join(others)}: figures may differ as far as docs/figures.md allows")
+                print(f"this machine has {'; '.join(others)}: figures may differ as far as docs/reproduce.md allows")
                 noted = others
             cases.append((row["command"], time.monotonic() - begin, "\n".join(found) or None))
             outcome = "FAILED" if found else "as far as allowed" if others else "as printed"
@@ -191,7 +191,7 @@ def test(cdiff, source, result):
 
 def write(cdiff, source):
     """Puts fresh figures and facts into the section; its commands and columns stay."""
-    page = source / "docs/figures.md"
+    page = source / "docs/reproduce.md"
     text = page.read_text()
     table = Table(text)
     section = table.section

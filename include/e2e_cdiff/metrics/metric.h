@@ -27,7 +27,7 @@ enum class Direction { kHigherIsBetter, kLowerIsBetter, kNeither };
 /// Whose driving a measure describes.
 enum class Subject { kEgo, kCbvs, kEgoAndOthers };
 
-/// What the values of several sessions are summed up to (docs/evaluation.md).
+/// What the values of several sessions are summed up to (docs/statistics.md).
 enum class Pooling {
   kByUnit,     ///< unit "count": kCount; "1/km": kRate; "%": kShare; else kMean
   kMean,       ///< mean of the sessions' values

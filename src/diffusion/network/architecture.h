@@ -14,8 +14,8 @@ namespace cdiff::diffusion {
 /// Speeds enter the networks divided by it [m/s].
 inline constexpr double kSpeedScale = 10.0;
 
-/// Sizes of the networks; they travel in the metadata of the weight files (docs/network.md draws
-/// the networks and names every tensor).
+/// Sizes of the networks; they travel in the metadata of the weight files (docs/neural_network.md
+/// draws the networks and names every tensor).
 struct Architecture {
   std::int64_t horizon = 32;                           ///< T, a multiple of 4
   std::int64_t diffusion_steps = 100;                  ///< K

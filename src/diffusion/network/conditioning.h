@@ -11,7 +11,7 @@
 
 namespace cdiff::diffusion {
 
-/// What conditions the denoiser (docs/network.md): time embedding of k and context c of each
+/// What conditions the denoiser (docs/neural_network.md): time embedding of k and context c of each
 /// sample. The linear injection of Mish([time; c]) is split by columns: its time part is tabulated
 /// for every k at load, its context part computed once per set of contexts.
 class Conditioning {

@@ -13,9 +13,9 @@
 
 namespace cdiff::diffusion {
 
-/// The layers of the image encoder (docs/network.md) over shared buffers: rgb8 pixels -> features
-/// [image_features]. The residual blocks multiply in a precision; first convolution, squeeze and
-/// projection in float32.
+/// The layers of the image encoder (docs/neural_network.md) over shared buffers: rgb8 pixels ->
+/// features [image_features]. The residual blocks multiply in a precision; first convolution,
+/// squeeze and projection in float32.
 class EncoderNetwork {
  public:
   /// Throws InputError naming a tensor that is missing or of another shape.

@@ -11,9 +11,9 @@
 
 namespace cdiff::diffusion {
 
-/// The state head (docs/network.md): [actions; v / 10; time embedding] -> states [B, T, 4], and its
-/// backward pass to the actions. The first layer's time columns are tabulated at load, its speed
-/// column is added once per set of contexts.
+/// The state head (docs/neural_network.md): [actions; v / 10; time embedding] -> states [B, T, 4],
+/// and its backward pass to the actions. The first layer's time columns are tabulated at load, its
+/// speed column is added once per set of contexts.
 class StateHead {
  public:
   /// `time_embeddings`: [K + 1, time_width].

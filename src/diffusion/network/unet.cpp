@@ -11,7 +11,7 @@
 
 namespace cdiff::diffusion {
 
-/// Joins layers and variables as docs/network.md draws them.
+/// Joins layers and variables as docs/neural_network.md draws them.
 class UNetBuilder {
  public:
   UNetBuilder(const inference::DenoiserKernels& kernels, const Architecture& architecture,

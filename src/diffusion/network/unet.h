@@ -20,8 +20,9 @@ struct Injection {
 };
 
 /// The action head: the temporal U-Net tau^k [B, T, 7] -> actions [B, T, 3] and its backward pass
-/// (docs/network.md). Where the architecture pins the current state, rows of it, (0, 0, 0, v / 10)
-/// without action, are written before tau^k at every forward pass; no gradient leaves through them.
+/// (docs/neural_network.md). Where the architecture pins the current state, rows of it, (0, 0, 0, v
+/// / 10) without action, are written before tau^k at every forward pass; no gradient leaves through
+/// them.
 class UNet {
  public:
   UNet(const inference::DenoiserKernels& kernels, const Architecture& architecture,

@@ -34,7 +34,7 @@ struct MeasureComparison {
 using Followers = std::map<std::string, std::pair<std::string, std::string>>;
 
 /// Two sets of runs side by side: runs are paired by the factors that the sets share, and each
-/// measure is compared over the pairs, with routes as what is drawn (docs/evaluation.md).
+/// measure is compared over the pairs, with routes as what is drawn (docs/statistics.md).
 struct Comparison {
   std::string a;  ///< names for people
   std::string b;

@@ -14,7 +14,7 @@ namespace cdiff::evaluation {
 
 // A table of the paper as data, and its cells as a batch fills them: per seed the mean over runs
 // (weighted where the figure is a rate: the pooled rate), then mean and standard deviation over
-// seeds, and the 95 % interval by routes (docs/evaluation.md); events per km are all seeds' events
+// seeds, and the 95 % interval by routes (docs/statistics.md); events per km are all seeds' events
 // over all their km, with an exact Poisson interval.
 
 /// A figure that the paper prints as mean +- deviation.

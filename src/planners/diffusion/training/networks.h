@@ -7,8 +7,8 @@
 
 namespace cdiff::planners {
 
-// The networks of docs/network.md with gradients: image encoder, denoiser, and the regression head
-// that trains the encoder. Float32; B is the batch.
+// The networks of docs/neural_network.md with gradients: image encoder, denoiser, and the
+// regression head that trains the encoder. Float32; B is the batch.
 
 /// The image encoder with gradients: images [B, 3, H, W] to features.
 class ImageEncoderNet {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// What trains and what drives are two implementations of docs/network.md: with the same weights
-// they must give the same measures. Tolerances: float32 sums of up to 4,608 products in another
-// order.
+// What trains and what drives are two implementations of docs/neural_network.md: with the same
+// weights they must give the same measures. Tolerances: float32 sums of up to 4,608 products in
+// another order.
 #include <gtest/gtest.h>
 
 #include "diffusion/network/cpu_denoiser.h"
@@ -132,7 +132,7 @@ TEST_P(Inference, ImageEncoderAgrees) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const auto value = static_cast<std::uint8_t>((i * 7919 + i / 311 * 13) % 256);
     image.rgb.push_back(value);
-    // Pixel-interleaved to planes, scaled as in docs/network.md.
+    // Pixel-interleaved to planes, scaled as in docs/neural_network.md.
     planes[i % 3 * 96 * 160 + i / 3] = (static_cast<float>(value) / 255.0F - 0.5F) / 0.25F;
   }
   diffusion::ImageEncoder ours(model_);
