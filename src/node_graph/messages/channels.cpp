@@ -2,8 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/messages/channels.h"
 
+#include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/Heartbeat.h"
 #include "e2e_cdiff/TickAck.h"
+#include "nav_msgs/Path.h"
 #include "node_graph/messages/channel_conversions.h"
 #include "rosgraph_msgs/Clock.h"
 #include "visualization_msgs/MarkerArray.h"
