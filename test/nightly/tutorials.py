@@ -32,7 +32,7 @@ LEFT_OUT = [
     (r"git clone|scripts/(demo|test|setup)|cmake --install", "sets up what is there already"),
     (r"\.\.\.", "is abridged"),
     (r"results/guidance_effect", "compares a matrix of 210 runs"),
-    (r"results/(towns|dev10|cbvs|egos)", "runs a matrix of 90 runs and more"),
+    (r"results/(towns|dev10|cbvs|egos|smooth|camera_egos)", "runs a matrix of 60 runs and more"),
     (r"--open-sealed", "opens a sealed suite"),
     (r"--bags monday\.bag", "needs a bag of the reader's own"),
     (r"scripts/benchmark", "measures, for which the machine must be quiet"),
