@@ -52,7 +52,7 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"modes", "", "naturalistic, safety_critical; empty: the scenario's."}, modes);
   visitor.list({"methods", "", "Shipped methods; empty: the scenario's."}, methods);
   visitor.list(
-      {"guidance_profiles", "", "Of the CBVs: shipped profiles or files; empty: that of the mode."},
+      {"guidance_profiles", "", "Guidance of the CBVs, shipped or a file; empty: the mode's."},
       guidance_profiles);
   visitor.list({"combinations", "",
                 "Instead of the product of the five lists above: sets of their levels, each "

@@ -29,8 +29,9 @@ const MeasureDefinition known::kContactsAtFault = {
     "count",
     Direction::kLowerIsBetter,
     Subject::kEgo,
-    "Of the ego's contacts, those in which it strikes the other, by their motion at first touch; a "
-    "standing ego is never at fault (docs/protocols.md).",
+    "Contacts in which the ego strikes the other, by their motion at first touch; a standing ego "
+    "is "
+    "never at fault (docs/protocols.md).",
     "",
     0,
 };

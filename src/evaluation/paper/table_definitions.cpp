@@ -360,7 +360,7 @@ TableDefinition collisionFigure() {
   table.rows.front().paper = {{5.68, {}}, {20.77, {}}, {5.68, {}}, {20.77, {}}};
   table.footnotes = systemDifferences({paper::kPlanT});
   for (const PaperSystem& ego : {paper::kPdmLite, paper::kPlanT}) {
-    table.footnotes.push_back("Of other CBV planners under " + std::string(ego.name) +
+    table.footnotes.push_back("For other CBV planners under " + std::string(ego.name) +
                               " RIFT's repository prints " + repositoryList(ego, "CPK", "per km") +
                               ".");
   }

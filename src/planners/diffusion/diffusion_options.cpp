@@ -16,22 +16,24 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
       conditioning, {"image_route", "image", "by_guidance"});
   visitor.number(
       {"route_scale", "",
-       "Of vehicles that are given their route: 0 ignores it, 1 heeds it, above 1 more."},
+       "How much the route counts where it is given: 0 nothing, 1 as trained, above 1 more."},
       route_scale, 0.0, 5.0);
   visitor.text({"motion", "",
                 "Given with the route to a model that takes them: the image of 0.4 s before, the "
                 "target speed, or all of that."},
                motion, {"all", "previous_image", "target_speed", "none"});
-  visitor.text({"current_state", "",
-                "Of the vehicle, before the trajectory that is denoised: pinned there, or none, as "
-                "the model was trained."},
-               current_state, {"none", "pinned"});
+  visitor.text(
+      {"current_state", "",
+       "State of the vehicle before the trajectory that is denoised: pinned there, or none, "
+       "as the model was trained."},
+      current_state, {"none", "pinned"});
   visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},
                state_branch, {"learned", "exact"});
-  visitor.text({"response", "",
-                "Of the executed throttle: as the dynamics was fitted, or monotone: one that would "
-                "slow the vehicle coasts."},
-               response, {"fitted", "monotone"});
+  visitor.text(
+      {"response", "",
+       "Response to the executed throttle: as the dynamics was fitted, or monotone: one that "
+       "would slow the vehicle coasts."},
+      response, {"fitted", "monotone"});
   visitor.number({"hysteresis", "", "Share of the score by which another mode must be better."},
                  hysteresis, 0.0, 1.0);
   visitor.number({"frozen_image_time", "s", "The same image for so long while moving is a fault."},

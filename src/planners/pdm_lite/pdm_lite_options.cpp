@@ -63,8 +63,8 @@ void PdmLiteOptions::describe(core::OptionsVisitor& visitor) {
                   "speed; 0: one driver for all."},
                  cbv_speed_spread, 0.0, 0.5);
   visitor.number({"cbv_headway_spread", "s",
-                  "Of the half-normal time that a CBV adds to its time "
-                  "headway; 0: one driver for all."},
+                  "Spread of the half-normal time that a CBV adds to its "
+                  "time headway; 0: one driver for all."},
                  cbv_headway_spread, 0.0, 3.0);
 }
 

@@ -11,15 +11,15 @@
 namespace cdiff::planners {
 
 void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
-  visitor.text({"precision", "", "Of the encoder in training."}, precision,
+  visitor.text({"precision", "", "Precision of the encoder in training."}, precision,
                {"auto", "f32", "bf16"});
   visitor.text({"network", "",
                 "Inputs of the denoiser: image, route and speed; the paper's, the image alone; "
                 "that and the current state, pinned; or also the image of 0.4 s before and the "
                 "target speed."},
                network, {"default", "paper", "pinned", "motion"});
-  visitor.text({"loss", "", "Of diffusion stages: first actions weighted, or the paper's."}, loss,
-               {"weighted", "plain"});
+  visitor.text({"loss", "", "Loss of diffusion stages: first actions weighted, or the paper's."},
+               loss, {"weighted", "plain"});
   visitor.number({"image_scale", "", "Size of images in stage encoder: 1 or 0.5."}, image_scale,
                  0.5, 1.0);
   visitor.number({"route_drop", "", "Share of samples without route."}, route_drop, 0.0, 1.0);
