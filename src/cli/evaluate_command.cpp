@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
+#include "cli/bench2drive_table.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
-#include "cli/bench2drive_table.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/program.h"
