@@ -5,7 +5,6 @@
 #include <iostream>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "node_graph/bags/recorded_session.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "node_graph/session_files.h"
@@ -92,13 +91,20 @@ bool ResultReserve::adopt(const msgs::TrafficSnapshot::ConstPtr& end, double wal
   } catch (const core::InputError& error) {
     giveUp(error.what());
   }
-  const int exit_code = bag_ ? replay(wall_seconds) : writeEnd(*end, wall_seconds);
+  std::unique_ptr<RecordedSession> session;
+  try {
+    if (bag_)
+      session = std::make_unique<RecordedSession>(results_.path() / kReserve / kBag,
+                                                  RecordedImages::kAll);
+  } catch (const core::InputError& error) {
+    giveUp(error.what());
+  }
+  const int exit_code = session ? replay(*session, wall_seconds) : writeEnd(*end, wall_seconds);
   writeExitCode(results_.path(), exit_code);
   return true;
 }
 
-int ResultReserve::replay(double wall_seconds) {
-  RecordedSession session(results_.path() / kReserve / kBag, RecordedImages::kAll);
+int ResultReserve::replay(RecordedSession& session, double wall_seconds) {
   page::ResultWriter writer(session.setup(), facts_, results_.path());
   ToleratedWriter tolerated(writer);
   showTicks(session, {&tolerated});

@@ -8,6 +8,7 @@
 #include "core/output_folder.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
+#include "node_graph/bags/recorded_session.h"
 #include "node_graph/bags/session_bag_writer.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "record/session_result.h"
@@ -31,14 +32,15 @@ class ResultReserve {
   /// Keeps a tick with the answers to it. From a full disk on the ticks are given up, and their
   /// room is free for the result.
   void keep(const ::e2e_cdiff::TrafficSnapshot::ConstPtr& snapshot, const TickAnswers& answers);
-  /// Writes the result of what was kept and of the session's end, prints its table and writes the
-  /// exit code; nothing where the metrics node has written its own meanwhile (file exit_code).
-  /// Returns whether it wrote. Throws InputError when not even a summary can be written.
+  /// Writes the result of what was kept, as far as it can be read, and of the session's end, prints
+  /// its table and writes the exit code; nothing where the metrics node has written its own
+  /// meanwhile (file exit_code). Returns whether it wrote. Throws InputError when not even a
+  /// summary can be written.
   bool adopt(const ::e2e_cdiff::TrafficSnapshot::ConstPtr& end, double wall_seconds);
 
  private:
   void giveUp(const std::string& why);
-  int replay(double wall_seconds);
+  int replay(RecordedSession& session, double wall_seconds);
   int writeEnd(const ::e2e_cdiff::TrafficSnapshot& end, double wall_seconds);
 
   const session::SessionSetup& setup_;

@@ -129,6 +129,23 @@ TEST(ResultReserve, NamesWhoEndedASessionBeforeItsFirstTick) {
   EXPECT_EQ(core::readFile(folder.path() / "exit_code", "exit code"), "2\n");
 }
 
+// Nobody writes there but us; a disk may still lose what was written.
+TEST(ResultReserve, TicksThatCannotBeReadAgainCostTheTicksAlone) {
+  const test::TemporaryFolder folder;
+  const session::SessionSetup setup(session::resolveRequest(shortSession()));
+  ResultReserve reserve(setup, infoOf(setup, folder.path()));
+  traffic::TrafficSnapshot snapshot;
+  reserve.keep(shared(toMsg(snapshot)), TickAnswers());
+  fs::resize_file(folder.path() / ".reserve" / "session.bag.active", 0);
+  EXPECT_TRUE(reserve.adopt(brokenEnd(1), 0.5));
+  const nlohmann::json summary = summaryIn(folder.path());
+  EXPECT_EQ(summary["status"], "error");
+  ASSERT_EQ(summary["faults"].size(), 2U) << summary["faults"];
+  EXPECT_EQ(summary["faults"][0]["source"], "result folder");
+  EXPECT_EQ(summary["faults"][1]["source"], "metrics_node");
+  EXPECT_EQ(core::readFile(folder.path() / "exit_code", "exit code"), "2\n");
+}
+
 TEST(ResultReserve, FullDiskCostsTheTicksButNotTheResult) {
   const test::TemporaryFolder folder;
   const session::SessionSetup setup(session::resolveRequest(shortSession()));
