@@ -140,7 +140,7 @@ class Record {
     }
   }
 
-  /// Puts a new record in place of the old one, which may have another name in a backup.
+  /// Replaces the record by a new file: a backup may hold the old one under another name.
   void store() const {
     const fs::path file = folder_ / OutputFolder::kRecord;
     const fs::path draft = draftOf(names_);

@@ -195,7 +195,7 @@ TEST(Architecture, RowsOfTheCurrentStateAreNamedOnlyWhereItIsPinned) {
   EXPECT_TRUE(Architecture::fromJson(pinned.toJson(), "test") == pinned);
   EXPECT_FALSE(pinned == Architecture().imageAlone());
   EXPECT_TRUE(pinned.imageAlone() == Architecture().imageAlone());
-  // The state head is told the speed, the context is not.
+  // The speed is an input of the state head, and none of the context.
   EXPECT_EQ(byName(denoiserTensors(pinned)).at("state.0.weight"), (Shape{256, 96 + 1 + 64}));
   EXPECT_EQ(pinned.contextValues(), pinned.image_features);
   Architecture uneven = pinned;

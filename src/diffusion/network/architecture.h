@@ -44,7 +44,7 @@ struct Architecture {
   bool pinsCurrentState() const { return current_state_rows > 0; }
   /// Rows of the U-Net: those of the current state, then T.
   std::int64_t rows() const { return current_state_rows + horizon; }
-  /// Whether the state head is told the speed that the vehicle starts with.
+  /// Whether the vehicle's present speed is an input of the state head.
   bool startsFromSpeed() const { return takesSpeed() || pinsCurrentState(); }
   /// Values of image, route, speed, image before and target speed together.
   std::int64_t joinedFeatures() const {
@@ -59,7 +59,7 @@ struct Architecture {
   /// The same with the paper's inputs (III-C2): the image alone, its features injected into every
   /// block as they are.
   Architecture imageAlone() const;
-  /// The same that sees motion, by the image of 0.4 s before, and is told the target speed.
+  /// The same with two more inputs: the image of 0.4 s before, and the target speed.
   Architecture withMotion() const;
   /// The paper's inputs and the current state, pinned as in Diffuser (Janner et al. 2022, 3.2).
   Architecture pinned() const;

@@ -12,7 +12,8 @@
 
 namespace cdiff::planners {
 
-// What a camera ego is told of its route, as Bench2Drive's agents are: a command and a point.
+// The inputs that a camera ego gets from its route, as Bench2Drive's agents do: a command and a
+// point.
 
 /// What the route asks for next, in the order of Bench2Drive's labels (CARLA's RoadOption minus 1).
 enum class RoadCommand : std::int32_t {

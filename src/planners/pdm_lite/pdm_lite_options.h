@@ -20,7 +20,7 @@ struct PdmLiteConfiguration {
 };
 
 /// How a vehicle follows by IDM (defaults: PDM-Lite's). With an acceleration the style is *even*:
-/// smooth pedals in place of full throttle and full brake by turns.
+/// the pedals are smooth instead of switching between full throttle and full brake.
 struct DrivingStyle {
   double minimum_gap = 4.0;    ///< s0 behind a leader [m]
   double time_headway = 0.25;  ///< T [s]
