@@ -227,9 +227,9 @@ void TrafficSimulatorNode::addTotals(msgs::TrafficSnapshot& message) const {
   }
 }
 
-/// Moves the world to the next tick. An ego that came to stand after a node was last heard may brake
-/// for want of that node: it is not blocked before the node answers again; otherwise its silence
-/// ends the session.
+/// Moves the world to the next tick. An ego that came to stand after a node was last heard may
+/// brake for want of that node: it is not blocked before the node answers again; otherwise its
+/// silence ends the session.
 void TrafficSimulatorNode::advance() {
   const TickInput input = pacer_->advance();
   const std::optional<double> since = world_->egoStandsSince();
