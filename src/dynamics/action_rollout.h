@@ -8,10 +8,11 @@
 
 namespace cdiff::dynamics {
 
-// What a vehicle executes of a denoised action: each value clamped to its range; of throttle and
-// brake the larger acts, the other is 0; a brake below 0.05 counts as none.
+// From planned actions to what a vehicle does with them; planners and data collection call it.
+// A vehicle executes each value clamped to its range. The larger of throttle and brake acts, the
+// other is 0; a brake below 0.05 counts as none.
 
-/// Of a row of a rollout.
+/// The action that the vehicle executes in a row of a rollout.
 traffic::ControlAction executableAction(const traffic::Rollout& rollout, Eigen::Index row);
 
 /// Replaces every row's action by the one that is executed.
@@ -25,8 +26,8 @@ class ActionRollout {
   explicit ActionRollout(const BicycleModelOptions& options = {},
                          ThrottleResponse response = ThrottleResponse::kFitted);
 
-  /// Fills the state columns of `rollout` from its action columns; actions out of range count as
-  /// clamped to it. The heading is not wrapped.
+  /// Fills the state columns of `rollout` from its action columns and v_0, `initial_speed` [m/s];
+  /// actions out of range count as clamped to it. The heading is not wrapped.
   void rollOut(double initial_speed, traffic::Rollout& rollout) const;
 
   /// Adds to the action columns of `gradient` what its state columns (dJ/ds) mean for the actions:

@@ -9,6 +9,8 @@
 
 namespace cdiff::learning {
 
+// A session as one file: `cdiff collect --scenes` writes it, trainings read it.
+
 /// Version of what scene files hold; readers refuse others.
 inline constexpr int kSceneVersion = 1;
 inline constexpr const char* kSceneExtension = ".scene";
