@@ -4,45 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "core/file.h"
-#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "learning/samples/dataset.h"
-#include "learning/samples/scene_file.h"
-#include "learning/samples/scene_tables.h"
 
 namespace cdiff::learning {
-namespace {
-
-constexpr ShardKind kSceneKind = {"CDIFFSCN", "scene"};
-constexpr const char* kVersionFact = "scene_version";
-
-void requireVersion(const ShardReader& file) {
-  const auto found = file.facts().find(kVersionFact);
-  const std::string version = found == file.facts().end() ? "none" : found->second;
-  if (version == std::to_string(kSceneVersion)) return;
-  throw core::InputError(file.name() + ": scene version " + version + ", this program reads " +
-                         std::to_string(kSceneVersion) + "; collect it again (cdiff collect)");
-}
-
-Scene sceneIn(const ShardReader& file) {
-  requireVersion(file);
-  if (!(file.schema() == sceneSchema()) || file.size() != 1) {
-    throw core::InputError(file.name() + ": its tables are not those of a scene of version " +
-                           std::to_string(kSceneVersion) + "; collect it again (cdiff collect)");
-  }
-  const Sample tables = file.sample(0);
-  try {
-    return sceneOfTables(tables);
-  } catch (const std::out_of_range&) {
-    throw core::InputError(file.name() + ": its tables do not fit each other");
-  }
-}
-
-}  // namespace
 
 void SceneSampleOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"period", "s", "Between two samples of a vehicle."}, period, 0.1, 60.0);
@@ -75,24 +41,6 @@ bool drivesOn(const traffic::VehicleState& before, const traffic::VehicleState& 
   const double moved = (after.position - before.position).norm();
   const double expected = 0.5 * kScenePeriod * (after.speed + before.speed);
   return std::abs(moved - expected) <= kJump;
-}
-
-std::string sceneBytes(const Scene& scene) {
-  ShardWriter writer(sceneSchema(), kSceneKind);
-  writer.append(tablesOf(scene));
-  return writer.take({{kVersionFact, std::to_string(kSceneVersion)}, {"session", scene.name}});
-}
-
-Scene sceneOf(std::string bytes, const std::string& source) {
-  return sceneIn(ShardReader(std::move(bytes), source, kSceneKind));
-}
-
-void writeScene(const std::filesystem::path& path, const Scene& scene) {
-  core::writeOwnFile(path, sceneBytes(scene));
-}
-
-Scene readScene(const std::filesystem::path& path) {
-  return sceneIn(ShardReader(path, kSceneKind));
 }
 
 map::Route routeOf(const Scene& scene, const SceneDrive& drive, const map::RoadNetwork& network) {
