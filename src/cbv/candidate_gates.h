@@ -22,6 +22,8 @@ inline constexpr const char* kTooNear = "too_near";
 inline constexpr const char* kOtherLevel = "other_level";
 /// Its preview point lies on no lane, or no lane here has its direction.
 inline constexpr const char* kOffLane = "off_lane";
+/// Stands on a lane of the ego's route: it waits in the same queue.
+inline constexpr const char* kQueued = "queued";
 /// In a junction, askew to the lanes below it.
 inline constexpr const char* kJunctionHeading = "junction_heading";
 /// No point of the ego's route lies near and ahead of it.
@@ -30,6 +32,8 @@ inline constexpr const char* kOutOfView = "out_of_view";
 inline constexpr const char* kNoWay = "no_way";
 /// The distances to drive differ by route_distance_gate or more at all points.
 inline constexpr const char* kDistanceMismatch = "distance_mismatch";
+/// It would touch another vehicle within clear_time, whoever drives it.
+inline constexpr const char* kContactAhead = "contact_ahead";
 /// It has a conflict, but found no slot.
 inline constexpr const char* kOutranked = "outranked";
 

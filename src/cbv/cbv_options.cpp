@@ -29,6 +29,12 @@ void describeGates(CbvOptions& options, core::OptionsVisitor& visitor) {
   visitor.number({"junction_heading_gate", "deg",
                   "Largest angle between candidate and lane inside a junction."},
                  options.junction_heading_gate, 0.0, 180.0);
+  visitor.number({"queue_speed", "m/s",
+                  "A candidate that is slower on a lane of the ego's route waits in its queue."},
+                 options.queue_speed, 0.0, 10.0);
+  visitor.number({"clear_time", "s",
+                  "For so long a vehicle that is taken over has no contact ahead; 0: only now."},
+                 options.clear_time, 0.0, 10.0);
 }
 
 void describeScore(CbvOptions& options, core::OptionsVisitor& visitor) {

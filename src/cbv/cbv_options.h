@@ -21,15 +21,18 @@ struct CbvOptions {
   double route_distance_gate = 20.0;    ///< largest |s_cbv - s_ego| at the conflict point [m]
   double preview_distance = 2.0;        ///< ahead of the candidate's center, must lie on a lane [m]
   double junction_heading_gate = 20.0;  ///< in a junction: vehicle against lane heading [deg]
-  double ego_route_length = 200.0;      ///< part of the ego's remaining route that is examined [m]
-  double sample_spacing = 4.0;          ///< between examined points [m]
-  double route_length = 160.0;          ///< least length of the conflict-aware route [m]
-  double distance_sigma = 10.0;         ///< sigma_s of the score [m]
-  double time_sigma = 2.0;              ///< sigma_T of the score [s]
-  double nearness_length = 40.0;        ///< l of the score [m]
-  double minimum_speed = 2.0;           ///< v_min of arrival times [m/s]
-  double first_time = 2.6;              ///< no selection before [s]
-  double period = 0.2;                  ///< between selections [s]
+  double queue_speed =
+      0.5;                  ///< slower on a lane of the ego's route: queued; 0: all are taken [m/s]
+  double clear_time = 1.0;  ///< no contact ahead for so long when it is taken over [s]
+  double ego_route_length = 200.0;  ///< part of the ego's remaining route that is examined [m]
+  double sample_spacing = 4.0;      ///< between examined points [m]
+  double route_length = 160.0;      ///< least length of the conflict-aware route [m]
+  double distance_sigma = 10.0;     ///< sigma_s of the score [m]
+  double time_sigma = 2.0;          ///< sigma_T of the score [s]
+  double nearness_length = 40.0;    ///< l of the score [m]
+  double minimum_speed = 2.0;       ///< v_min of arrival times [m/s]
+  double first_time = 2.6;          ///< no selection before [s]
+  double period = 0.2;              ///< between selections [s]
   std::string life_cycle =
       "rift";               ///< rift | reselect: release on a lost conflict, with hysteresis
   double hysteresis = 0.1;  ///< reselect: a challenger's score must be better by this

@@ -192,6 +192,10 @@ void CbvSelector::select(const traffic::TrafficSnapshot& snapshot, CbvSelection&
       selection.rejected.push_back({id, kNoWay, candidate.conflict.score});
       continue;
     }
+    if (hasContactAhead(snapshot, candidate, *chosen)) {
+      selection.rejected.push_back({id, kContactAhead, candidate.conflict.score});
+      continue;
+    }
     if (slots_.count(slot) != 0) release(slot, kOutranked, selection);
     slots_.emplace(slot, std::move(*chosen));
   }
@@ -237,12 +241,39 @@ const char* CbvSelector::examine(const traffic::TrafficSnapshot& snapshot,
   if (failed != nullptr) return failed;
   const LanePlacement placement = placeOnLane(graph_.network(), vehicle, options_);
   if (placement.reason != nullptr) return placement.reason;
+  if (queued(vehicle, placement.place)) return kQueued;
   const ConflictResult result = search_.find(vehicle.state, placement.place, ego_);
   if (!result.conflict) return result.reason;
   candidate.place = placement.place;
   candidate.conflict = *result.conflict;
   candidate.separation = (vehicle.state.position - ego_.state.position).norm();
   return nullptr;
+}
+
+bool CbvSelector::queued(const traffic::Vehicle& vehicle, const map::LanePosition& place) const {
+  if (vehicle.state.speed >= options_.queue_speed) return false;
+  const std::vector<map::LaneIndex>& lanes = ego_route_.lanes();
+  return std::find(lanes.begin(), lanes.end(), place.lane) != lanes.end();
+}
+
+/// The candidate goes along its conflict-aware route, as do the CBVs; the ego follows its route.
+bool CbvSelector::hasContactAhead(const traffic::TrafficSnapshot& snapshot,
+                                  const Candidate& candidate, const HeldCbv& chosen) const {
+  std::vector<Motion> others;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.id == candidate.vehicle->id) continue;
+    const auto held = std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) {
+      return slot.second.vehicleId() == vehicle.id;
+    });
+    if (held != slots_.end()) {
+      others.push_back(held->second.motion(vehicle));
+    } else if (vehicle.role == traffic::VehicleRole::kEgo) {
+      others.push_back({vehicle, &ego_route_.path(), ego_.arc_length});
+    } else {
+      others.push_back({vehicle});
+    }
+  }
+  return contactAhead(chosen.motion(*candidate.vehicle), others, options_.clear_time);
 }
 
 /// The lowest free slot; in the life cycle "reselect" else that of the weakest CBV when the

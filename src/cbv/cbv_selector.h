@@ -10,6 +10,7 @@
 
 #include "cbv/cbv_options.h"
 #include "cbv/conflict_search.h"
+#include "cbv/hand_over.h"
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "map/lane_graph.h"
@@ -50,6 +51,10 @@ class HeldCbv {
   /// Moves along the route; distances and times of the conflict point as of this snapshot, 0 once
   /// passed.
   void update(const traffic::Vehicle& vehicle, const EgoProgress& ego, double minimum_speed);
+  /// Where it goes.
+  Motion motion(const traffic::Vehicle& vehicle) const {
+    return {vehicle, &assignment_.conflict_aware_route.path(), arc_length_};
+  }
   /// Reason to release in every life cycle, or nullptr.
   const char* releaseReason(const traffic::TrafficSnapshot& snapshot) const;
 
@@ -114,6 +119,9 @@ class CbvSelector : public VehicleSelector {
   bool reselects() const { return options_.life_cycle == "reselect"; }
   void followEgo(const traffic::Vehicle& ego);
   bool selectionDue(double time);
+  bool queued(const traffic::Vehicle& vehicle, const map::LanePosition& place) const;
+  bool hasContactAhead(const traffic::TrafficSnapshot& snapshot, const Candidate& candidate,
+                       const HeldCbv& chosen) const;
   bool holds(const std::string& vehicle_id) const;
   void updateHeld(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
   void releaseLost(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);

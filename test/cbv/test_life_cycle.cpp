@@ -208,6 +208,7 @@ TEST(LifeCycle, ReselectReplacesTheWeakest) {
   const auto strong = fromNorth("strong", 30.0, 9.0);
   CbvOptions options = reselecting();
   options.hysteresis = 0.1;
+  options.clear_time = 0.0;  // "better" follows "strong" closely
   for (const bool weak_first : {true, false}) {
     CrossingWorld world(options, 2);
     const auto& one = weak_first ? weak : strong;
@@ -218,7 +219,7 @@ TEST(LifeCycle, ReselectReplacesTheWeakest) {
     ASSERT_EQ(two.assignments.size(), 2u);
     const auto then = world.selector.update(
         crossingSnapshot(kFirst + 2 * kPeriod, 70.0,
-                         {driven(one, 0), driven(other, 1), fromNorth("better", 31.0, 9.0)}));
+                         {driven(one, 0), driven(other, 1), fromNorth("better", 34.6, 9.0)}));
     ASSERT_EQ(then.released.size(), 1u);
     EXPECT_EQ(then.released[0].vehicle_id, "weak");
     EXPECT_EQ(then.released[0].slot, weak_first ? 0 : 1);

@@ -75,7 +75,7 @@ class TownSelection : public ::testing::Test {
 TEST_F(TownSelection, EveryAssignmentKeepsItsPromises) {
   int chosen = 0;
   const CbvOptions options;
-  for (std::uint32_t round = 0; round < 40; ++round) {
+  for (std::uint32_t round = 0; round < 60; ++round) {
     const map::Route route = egoRoute(13 * round);
     CbvSelector selector(options, 2, *graph_, route);
     const auto world = snapshot(route, round);
