@@ -4,7 +4,7 @@
 // touch another vehicle, whoever drives.
 #include <gtest/gtest.h>
 
-#include "cbv/candidates.h"
+#include "cbv/candidate_gates.h"
 #include "cbv/crossing_world.h"
 #include "cbv/hand_over.h"
 
