@@ -15,10 +15,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import junit  # noqa: E402
 
-FORBIDDEN = re.compile(r"netgenerate|sealed_[ab]\b|sealed_[ab]_|draw_sealed")
+FORBIDDEN = re.compile(r"netgenerate|sealed_[a-d]\b|sealed_[a-d]_|draw_sealed")
 TOPS = ["src", "include", "config", "launch", "examples", "networks", "cmake", "benchmark"]
 SCRIPTS_THAT_DRAW = ("scripts/draw_sealed_suites", "scripts/sealed_suites/")
-SUITES = ("config/suites/sealed_a/", "config/suites/sealed_b/")
+SUITES = tuple(f"config/suites/sealed_{letter}/" for letter in "abcd")
 MATRICES = "config/evaluations/"  # they evaluate and make no training data
 TEXT = {".cpp", ".h", ".py", ".yaml", ".yml", ".cmake", ".txt", ".xml", ".launch", ".in", ".netccfg", ".sh", ""}
 

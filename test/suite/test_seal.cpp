@@ -102,6 +102,8 @@ TEST(SealedSuites, HaveTheSealsOfTheirDrawing) {
   };
   EXPECT_EQ(hashOf("sealed_a"), "bb7de57f1463c2d9f860bd82d2520911c77dee8081573b0686f0ff392af62e41");
   EXPECT_EQ(hashOf("sealed_b"), "06a475b790291a99f077755be3e2b9261450fadac553eb083cce286afb10a4a3");
+  EXPECT_EQ(hashOf("sealed_c"), "092486ac25a81b96c86b691281ba45abb8ca2444f95edc494d85981c4d6dfdf9");
+  EXPECT_EQ(hashOf("sealed_d"), "d9c8f2df3a0ac539aa3a5ead94c928cc5bfddbed3600687ab5e121c48b068e04");
 }
 
 TEST_P(SealedSuite, HasSixteenRoutesOnAsManyNetworksHalfOfThemGenerated) {
@@ -136,7 +138,8 @@ TEST_P(SealedSuite, EveryRouteIsDrivableUnderTheProtocolOfFortySeconds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, SealedSuite, testing::Values("sealed_a", "sealed_b"),
+INSTANTIATE_TEST_SUITE_P(Each, SealedSuite,
+                         testing::Values("sealed_a", "sealed_b", "sealed_c", "sealed_d"),
                          [](const auto& info) { return std::string(info.param); });
 
 std::set<std::string> edgesOf(const Suite& suite) {
@@ -150,8 +153,10 @@ std::set<std::string> edgesOf(const Suite& suite) {
 }
 
 TEST(SealedSuites, ShareNoEdgeWithEachOther) {
-  const std::set<std::string> a = edgesOf(loadSuite("sealed_a"));
-  for (const std::string& edge : edgesOf(loadSuite("sealed_b"))) EXPECT_EQ(a.count(edge), 0U);
+  std::set<std::string> known;
+  for (const char* suite : {"sealed_a", "sealed_b", "sealed_c", "sealed_d"})
+    for (const std::string& edge : edgesOf(loadSuite(suite)))
+      EXPECT_TRUE(known.insert(edge).second) << edge << " of " << suite;
 }
 
 }  // namespace
