@@ -14,6 +14,7 @@
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison/comparison.h"
 #include "evaluation/comparison/comparison_text.h"
+#include "evaluation/dose_response.h"
 #include "evaluation/matrix.h"
 #include "evaluation/pedal_use.h"
 #include "page/training_pages.h"
@@ -28,6 +29,7 @@ struct ReportArguments {
   std::string tables;
   std::string training;
   std::string pedals;
+  std::string doses;
   std::vector<std::string> folders;
   std::vector<std::string> measures;
   std::string factor;
@@ -105,12 +107,25 @@ int makeTables(const fs::path& results) {
   return ExitCode::kPassed;
 }
 
+/// How measures follow the doses of a batch's variants.
+int printDoses(const ReportArguments& arguments) {
+  if (arguments.measures.empty())
+    throw InputError("--doses needs a measure, as --figure cbv_speed_mean_mps");
+  const evaluation::RunSet runs = readBatch(arguments.doses);
+  std::cout << evaluation::doseMarkdown(
+      evaluation::doseResponses(runs.records, arguments.measures));
+  return ExitCode::kPassed;
+}
+
 int report(const ReportArguments& arguments) {
   const int asked = (arguments.tables.empty() ? 0 : 1) + (arguments.folders.empty() ? 0 : 1) +
-                    (arguments.training.empty() ? 0 : 1) + (arguments.pedals.empty() ? 0 : 1);
+                    (arguments.training.empty() ? 0 : 1) + (arguments.pedals.empty() ? 0 : 1) +
+                    (arguments.doses.empty() ? 0 : 1);
   if (asked != 1) {
-    throw InputError("give one of --compare A B, --tables DIR, --training DIR and --pedals DIR");
+    throw InputError(
+        "give one of --compare A B, --doses DIR, --tables DIR, --training DIR and --pedals DIR");
   }
+  if (!arguments.doses.empty()) return printDoses(arguments);
   if (!arguments.pedals.empty()) {
     std::cout << evaluation::pedalMarkdown(evaluation::pedalCounts(arguments.pedals));
     return ExitCode::kPassed;
@@ -162,6 +177,9 @@ void addReportCommand(CLI::App& program, int& exit_code) {
       ->add_option("--compare", arguments->folders,
                    "Result folders A and B of `cdiff evaluate`, or one with --factor")
       ->expected(1, 2);
+  command->add_option("--doses", arguments->doses,
+                      "Print how measures follow the doses of this result folder: the variants "
+                      "AXIS_NUMBER, with rank correlations");
   command->add_option("--tables", arguments->tables,
                       "Write tables/, figures/ and index.html of this result folder again");
   command->add_option("--training", arguments->training,
