@@ -62,6 +62,29 @@ class Scripts(unittest.TestCase):
             self.assertEqual(compared("other").stdout, "l2 1.000 1.225 +0.225 [+0.100, +0.300]\n")
             self.assertNotEqual(compared("fewer").returncode, 0)
 
+    def test_searches_are_checked_before_anything_runs(self):
+        def refused(change, *arguments):
+            """What a shipped procedure, changed, gives: exit code and error."""
+            with tempfile.TemporaryDirectory() as folder:
+                text = (SOURCE / "config/searches/paper_weights.yaml").read_text(encoding="utf-8")
+                (Path(folder) / "changed.yaml").write_text(change(text), encoding="utf-8")
+                (Path(folder) / "empty").mkdir()
+                done = subprocess.run([SOURCE / "scripts/search_weights", "changed.yaml", "--suite", "empty", "--results", "results", *arguments],
+                                      cwd=folder, timeout=60, capture_output=True, text=True, check=False)
+                self.assertEqual(os.listdir(Path(folder) / "results") if (Path(folder) / "results").exists() else [], [])
+                return done.returncode, done.stderr
+
+        for procedure in sorted((SOURCE / "config/searches").glob("*.yaml")):  # each one shipped comes as far as the suite
+            code, error = refused(lambda _, path=procedure: path.read_text(encoding="utf-8"))
+            self.assertEqual((code, "'empty' holds no scenarios" in error), (3, True), error)
+        for change, named in ((lambda text: text.replace("w_safe: 50", "w_safe: -50"), "w_safe is -50"),
+                              (lambda text: text.replace("order: [w_area", "order: [w_aera"), "'w_aera'"),
+                              (lambda text: text.replace("factors: [0.33, 3]", "factors: [0, 3]"), "factors"),
+                              (lambda text: text.replace("seeds:", "sedes:"), "seeds"),
+                              (lambda text: text + "names: [", "changed.yaml")):
+            code, error = refused(change)
+            self.assertEqual((code, named in error), (3, True), error)
+
     def test_benchmark_builds_itself_only(self):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
         self.assertEqual(targets_of(calls_of("benchmark", "--json", "x", "map")), [["cdiff_benchmark"]])
