@@ -89,8 +89,8 @@ std::string repeatedText(const Bench2DriveSelection& selection) {
   if (selection.repeated.empty()) return "";
   std::vector<std::string> texts;
   for (const auto& [id, kept] : selection.repeated) texts.push_back(id + " (as " + kept + ")");
-  return "left out, waypoints equal to those of another route: " + core::joinText(texts, ", ") +
-         "; " + std::to_string(selection.routes.size()) + " of " +
+  return "left out, the path is that of another route: " + core::joinText(texts, ", ") + "; " +
+         std::to_string(selection.routes.size()) + " of " +
          std::to_string(selection.routes.size() + selection.repeated.size()) + " routes are run\n";
 }
 

@@ -3,12 +3,15 @@
 #include "map/bench2drive_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/file.h"
 #include "core/spelling.h"
 #include "core/text.h"
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::map {
 namespace {
@@ -22,6 +25,11 @@ std::string nearestIds(const std::string& id, std::vector<std::string> ids) {
   return core::joinText(nearest, ", ");
 }
 
+constexpr double kSameLine = 1.0;       ///< two lines nearer than this are one [m]
+constexpr double kSameHeading = 0.5;    ///< where their headings differ by less [rad]
+constexpr double kSameShare = 0.9;      ///< on more than this share of the longer one
+constexpr double kSampleSpacing = 1.0;  ///< between points that are compared [m]
+
 /// Town and waypoints as they are written.
 std::string placeOf(const pugi::xml_node& route) {
   std::string place = route.attribute("town").value();
@@ -30,6 +38,54 @@ std::string placeOf(const pugi::xml_node& route) {
       place += std::string(" ") + position.attribute(name).value();
   }
   return place;
+}
+
+/// A route, and the line through its waypoints in CARLA's frame; empty without two points.
+struct RouteLine {
+  std::string id;
+  std::string town;
+  std::string place;
+  geometry::Polyline line;
+};
+
+RouteLine lineOf(const pugi::xml_node& route) {
+  RouteLine line{
+      route.attribute("id").value(), route.attribute("town").value(), placeOf(route), {}};
+  std::vector<Eigen::Vector3d> points;
+  for (const pugi::xml_node& position : route.child("waypoints").children("position")) {
+    const Eigen::Vector3d point(position.attribute("x").as_double(),
+                                position.attribute("y").as_double(),
+                                position.attribute("z").as_double());
+    if (!point.allFinite()) return line;  // whoever drives it says what is wrong
+    if (points.empty() || (point - points.back()).head<2>().norm() > 0.001) points.push_back(point);
+  }
+  if (points.size() > 1) line.line = geometry::Polyline(points);
+  return line;
+}
+
+/// Share of the longer line that the other one follows: near it, at its level, in its direction.
+double sharedPart(const geometry::Polyline& first, const geometry::Polyline& second) {
+  const bool swap = first.length() < second.length();
+  const geometry::Polyline& longer = swap ? second : first;
+  const geometry::Polyline& shorter = swap ? first : second;
+  int shared = 0;
+  const int samples = static_cast<int>(longer.length() / kSampleSpacing) + 1;
+  for (int i = 0; i < samples; ++i) {
+    const double at = i * kSampleSpacing;
+    const Eigen::Vector3d point = longer.pointAt(at);
+    const geometry::Projection near = shorter.project(point.head<2>());
+    const double turn = core::angleDifference(near.heading, longer.headingAt(at));
+    if (near.distance < kSameLine && std::abs(near.elevation - point.z()) < kSameLine &&
+        std::abs(turn) < kSameHeading)
+      ++shared;
+  }
+  return static_cast<double>(shared) / samples;
+}
+
+bool repeats(const RouteLine& route, const RouteLine& other) {
+  if (route.place == other.place) return true;
+  if (route.town != other.town || route.line.empty() || other.line.empty()) return false;
+  return sharedPart(route.line, other.line) > kSameShare;
 }
 
 /// Of whole numbers without leading zeros: the shorter one is lower.
@@ -65,14 +121,21 @@ std::vector<Bench2DriveEntry> Bench2DriveFile::entries() const {
 }
 
 std::map<std::string, std::string> Bench2DriveFile::repeatedRoutes() const {
-  std::map<std::string, std::vector<std::string>> ids_by_place;
+  std::vector<RouteLine> routes;
   for (const pugi::xml_node& route : document_.child("routes").children("route"))
-    ids_by_place[placeOf(route)].emplace_back(route.attribute("id").value());
+    routes.push_back(lineOf(route));
+  std::sort(routes.begin(), routes.end(), [](const RouteLine& left, const RouteLine& right) {
+    return isLower(left.id, right.id);
+  });
+  std::vector<const RouteLine*> kept;
   std::map<std::string, std::string> repeated;
-  for (const auto& [place, ids] : ids_by_place) {
-    const std::string& lowest = *std::min_element(ids.begin(), ids.end(), isLower);
-    for (const std::string& id : ids) {
-      if (id != lowest) repeated[id] = lowest;
+  for (const RouteLine& route : routes) {
+    const auto same = std::find_if(kept.begin(), kept.end(),
+                                   [&](const RouteLine* other) { return repeats(route, *other); });
+    if (same == kept.end()) {
+      kept.push_back(&route);
+    } else if (route.id != (*same)->id) {
+      repeated[route.id] = (*same)->id;
     }
   }
   return repeated;

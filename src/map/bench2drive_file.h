@@ -24,9 +24,10 @@ class Bench2DriveFile {
   /// Ids and towns in the file's order.
   std::vector<Bench2DriveEntry> entries() const;
 
-  /// Routes that repeat another one: by the id of each, the lowest id in the same town with equal
-  /// waypoints. Such routes differ in their CARLA scenario alone, which is not run here, so that
-  /// they would count one and the same route several times.
+  /// Routes that repeat another one: by the id of each, the lowest id in the same town whose
+  /// waypoints are equal, or share more than 90 % of the longer path (within 1 m and 0.5 rad). Such
+  /// routes differ in their CARLA scenario, which is not run here, or by a few meters at an end:
+  /// they would count one and the same place several times.
   std::map<std::string, std::string> repeatedRoutes() const;
 
   /// Throws InputError naming the file.

@@ -44,8 +44,7 @@ TEST_F(Selection, EqualWayPointsCountOnceUnderTheLowestId) {
   EXPECT_EQ(idsOf(all), (Ids{"7", "25378"}));
   EXPECT_EQ(all.repeated, (std::map<std::string, std::string>{{"12", "7"}}));
   EXPECT_EQ(repeatedText(all),
-            "left out, waypoints equal to those of another route: 12 (as 7); 2 of 3 routes are "
-            "run\n");
+            "left out, the path is that of another route: 12 (as 7); 2 of 3 routes are run\n");
 }
 
 TEST_F(Selection, ARouteNamedWithoutItsTwinIsRun) {

@@ -199,12 +199,34 @@ TEST_F(RouteFile, FindsRoutesThatRepeatAnotherOne) {
   EXPECT_EQ(Bench2DriveFile(file_.string()).repeatedRoutes(), expected);
 }
 
+/// Straight on along x, with a waypoint every 10 m.
+std::string straight(const std::string& id, int first_x, int last_x, double y, double z = 0.0) {
+  const int step = first_x < last_x ? 10 : -10;
+  std::string text = "<route id=\"" + id + "\" town=\"Town01\"><waypoints>";
+  for (int x = first_x; x != last_x + step; x += step)
+    text += "<position x=\"" + std::to_string(x) + "\" y=\"" + std::to_string(y) + "\" z=\"" +
+            std::to_string(z) + "\"/>";
+  return text + "</waypoints></route>";
+}
+
+/// 6 is 100 of the 110 m of 2, beside it by 0.4 m; 3 lies in the next lane, 4 leads back, 5 is on
+/// a bridge, 7 shares 80 m.
+TEST_F(RouteFile, FindsRoutesWhosePathsOverlap) {
+  core::writeFileAtomically(
+      file_, "<routes>" + straight("6", 0, 100, 0.0) + straight("2", 0, 110, 0.4) +
+                 straight("3", 0, 100, 3.5) + straight("4", 100, 0, 0.0) +
+                 straight("5", 0, 100, 0.0, 6.0) + straight("7", 30, 130, 0.0) + "</routes>");
+  const std::map<std::string, std::string> expected = {{"6", "2"}};
+  EXPECT_EQ(Bench2DriveFile(file_.string()).repeatedRoutes(), expected);
+}
+
 TEST(Bench2Drive, NamesTheRepeatedRoutesOfTheRealFile) {
   const auto file = test::realData("bench2drive/bench2drive220.xml");
   CDIFF_SKIP_WITHOUT(file);
   const auto repeated = Bench2DriveFile(file.string()).repeatedRoutes();
   for (const char* id : {"25896", "26435", "26456"}) EXPECT_EQ(repeated.at(id), "25854");
   EXPECT_EQ(repeated.at("26406"), "24785");
+  EXPECT_EQ(repeated.at("26408"), "26394");  // 2 m longer
 }
 
 TEST(Bench2Drive, CountsTheRoutesOfTheRealFile) {
