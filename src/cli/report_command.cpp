@@ -16,6 +16,7 @@
 #include "evaluation/comparison/comparison_text.h"
 #include "evaluation/dose_response.h"
 #include "evaluation/matrix.h"
+#include "evaluation/paper/findings.h"
 #include "evaluation/pedal_use.h"
 #include "page/training_pages.h"
 
@@ -30,6 +31,7 @@ struct ReportArguments {
   std::string training;
   std::string pedals;
   std::string doses;
+  std::string findings;
   std::vector<std::string> folders;
   std::vector<std::string> measures;
   std::string factor;
@@ -120,12 +122,18 @@ int printDoses(const ReportArguments& arguments) {
 int report(const ReportArguments& arguments) {
   const int asked = (arguments.tables.empty() ? 0 : 1) + (arguments.folders.empty() ? 0 : 1) +
                     (arguments.training.empty() ? 0 : 1) + (arguments.pedals.empty() ? 0 : 1) +
-                    (arguments.doses.empty() ? 0 : 1);
+                    (arguments.doses.empty() ? 0 : 1) + (arguments.findings.empty() ? 0 : 1);
   if (asked != 1) {
     throw InputError(
-        "give one of --compare A B, --doses DIR, --tables DIR, --training DIR and --pedals DIR");
+        "give one of --compare A B, --doses DIR, --findings DIR, --tables DIR, --training DIR and "
+        "--pedals DIR");
   }
   if (!arguments.doses.empty()) return printDoses(arguments);
+  if (!arguments.findings.empty()) {
+    std::cout << evaluation::findingsMarkdown(
+        evaluation::findingsOf(evaluation::readBatchRuns(arguments.findings)));
+    return ExitCode::kPassed;
+  }
   if (!arguments.pedals.empty()) {
     std::cout << evaluation::pedalMarkdown(evaluation::pedalCounts(arguments.pedals));
     return ExitCode::kPassed;
@@ -180,6 +188,9 @@ void addReportCommand(CLI::App& program, int& exit_code) {
   command->add_option("--doses", arguments->doses,
                       "Print how measures follow the doses of this result folder: the variants "
                       "AXIS_NUMBER, with rank correlations");
+  command->add_option("--findings", arguments->findings,
+                      "Print which findings of the paper this result folder of evaluation "
+                      "paper_tables reproduces");
   command->add_option("--tables", arguments->tables,
                       "Write tables/, figures/ and index.html of this result folder again");
   command->add_option("--training", arguments->training,

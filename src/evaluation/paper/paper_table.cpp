@@ -3,15 +3,12 @@
 #include "evaluation/paper/paper_table.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <set>
 
 #include "core/csv.h"
 #include "core/text.h"
-#include "evaluation/intervals/intervals.h"
 #include "evaluation/intervals/pooled_estimate.h"
-#include "metrics/metric_registry.h"
+#include "evaluation/paper/cell_sums.h"
 #include "planners/registry.h"
 #include "session/session_request.h"
 
@@ -135,113 +132,6 @@ std::string withSubject(std::string key, const std::string& subject) {
   return place == std::string::npos ? key : key.replace(place, 2, subject);
 }
 
-/// What the runs of a cell add to a figure, by route and seed.
-class CellSums {
- public:
-  /// Complete runs that have `key`; those of weight 0 are skipped.
-  CellSums(const std::vector<const BatchRun*>& runs, const std::string& key,
-           const std::string& weight) {
-    for (const BatchRun* run : runs) {
-      const auto value = run->number(key);
-      const double share = weight.empty() ? 1.0 : run->number(weight).value_or(0.0);
-      if (value && share > 0.0) add(*run, *value, share);
-    }
-  }
-
-  std::size_t used() const { return used_; }
-  std::size_t routes() const { return routes_.size(); }
-
-  /// Mean and deviation over seeds of the weighted means within them; interval by routes, of a
-  /// bounded figure that is the same on all of them by those that were not seen.
-  Statistics overSeeds(RouteBootstrap& bootstrap, const metrics::PoolingRule& rule) const {
-    Statistics statistics = statisticsOf(seedMeans(allRoutes()));
-    statistics.interval = bootstrap.interval(routes(), [&](const std::uint32_t* first) {
-      return statisticsOf(seedMeans({first, first + routes()})).mean;
-    });
-    const bool bounded = std::isfinite(rule.least) && std::isfinite(rule.most);
-    if (!statistics.interval && bounded && routes() > 1)
-      statistics.interval = unseenInterval(*statistics.mean, rule.least, rule.most, routes());
-    return statistics;
-  }
-
-  /// The same of events per km, where weights are meters; counts go to the cell.
-  Statistics ofEvents(RouteBootstrap& bootstrap, TableCell& cell) const {
-    Statistics statistics = statisticsOf(seedMeans(allRoutes()));
-    cell.events = static_cast<std::size_t>(std::llround(events_));
-    cell.kilometers = kilometers_;
-    statistics.interval = std::nullopt;
-    if (used_ == 0) return statistics;
-    statistics.mean = events_ / kilometers_;
-    statistics.interval =
-        rateInterval(*cell.events, kilometers_, bootstrap.valueInterval(perKilometer()));
-    return statistics;
-  }
-
- private:
-  void add(const BatchRun& run, double value, double share) {
-    const auto& factors = run.record.factors;
-    const std::size_t seed = seeds_.emplace(factors.at("seed"), seeds_.size()).first->second;
-    const std::size_t route = names_.emplace(factors.at("scenario"), names_.size()).first->second;
-    if (route == routes_.size()) routes_.emplace_back();
-    RouteSum& sum = routes_[route][seed];
-    sum.sum += share * value;
-    sum.weight += share;
-    events_ += std::round(share * value / 1000.0);
-    kilometers_ += share / 1000.0;
-    ++used_;
-  }
-
-  /// Events and km of each route.
-  RouteSums perKilometer() const {
-    RouteSums sums;
-    for (const auto& route : routes_) {
-      sums.emplace_back();
-      for (const auto& [seed, sum] : route) {
-        sums.back().sum += sum.sum / 1000.0;
-        sums.back().weight += sum.weight / 1000.0;
-      }
-    }
-    return sums;
-  }
-
-  std::vector<std::uint32_t> allRoutes() const {
-    std::vector<std::uint32_t> all(routes());
-    std::iota(all.begin(), all.end(), 0U);
-    return all;
-  }
-
-  /// Of these routes, by seed.
-  std::vector<double> seedMeans(const std::vector<std::uint32_t>& drawn) const {
-    RouteSums sums(seeds_.size());
-    for (const std::uint32_t route : drawn) {
-      for (const auto& [seed, sum] : routes_[route]) {
-        sums[seed].sum += sum.sum;
-        sums[seed].weight += sum.weight;
-      }
-    }
-    std::vector<double> means;
-    for (const RouteSum& sum : sums) {
-      if (sum.weight > 0.0) means.push_back(sum.sum / sum.weight);
-    }
-    return means;
-  }
-
-  std::map<std::string, std::size_t> seeds_;  ///< places by name
-  std::map<std::string, std::size_t> names_;  ///< of routes
-  std::vector<std::map<std::size_t, RouteSum>> routes_;
-  std::size_t used_ = 0;
-  double events_ = 0.0;  ///< where values are per km and weights meters
-  double kilometers_ = 0.0;
-};
-
-/// The rule of the measure at a place of summary.json; a plain mean where there is none.
-metrics::PoolingRule ruleAt(const std::string& place) {
-  const auto& all = metrics::measureDefinitions();
-  const auto found = std::find_if(
-      all.begin(), all.end(), [&](const auto& definition) { return place == definition.place; });
-  return found == all.end() ? metrics::kPlainMean : metrics::poolingOf(*found);
-}
-
 /// Modes, joined, in which the batch ran what else has these levels; empty where it ran the mode of
 /// `levels`, or where they have none.
 std::string otherModes(const Factors& levels, const std::vector<BatchRun>& runs) {
@@ -272,11 +162,16 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
   const std::string weight = withSubject(column.weight, row.subject);
   if (!column.rift_key.empty())
     cell.rift =
-        CellSums(own, column.rift_key, weight).overSeeds(bootstrap, ruleAt(column.rift_key));
+        CellSums(own, column.rift_key, weight).overSeeds(bootstrap, poolingAt(column.rift_key));
   const CellSums sums(own, withSubject(column.key, row.subject), weight);
-  const metrics::PoolingRule rule = ruleAt(column.key);
-  cell.seeds = rule.kind == metrics::Pooling::kRate ? sums.ofEvents(bootstrap, cell)
-                                                    : sums.overSeeds(bootstrap, rule);
+  const metrics::PoolingRule rule = poolingAt(column.key);
+  if (rule.kind == metrics::Pooling::kRate) {
+    cell.events = sums.events();
+    cell.kilometers = sums.kilometers();
+    cell.seeds = sums.ofEvents(bootstrap);
+  } else {
+    cell.seeds = sums.overSeeds(bootstrap, rule);
+  }
   cell.used = sums.used();
   cell.routes = sums.routes();
   if (!cell.seeds.mean) cell.note = emptyReason(levels, runs, kNoRunHasIt);
