@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/idm.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {
@@ -165,6 +164,11 @@ double idmBehind(const DrivingStyle& style, const traffic::Vehicle& self,
   obstacle.distance = (leader.state.position - self.state.position).norm();
   obstacle.speed = leader.state.speed;
   obstacle.length = leader.dimensions.length;
+  return idmBehind(style, obstacle, speed, desired);
+}
+
+double idmBehind(const DrivingStyle& style, const IdmObstacle& obstacle, double speed,
+                 double desired) {
   return idmSpeed(speed, desiredBehind(style, speed, desired), obstacle, parametersOf(style));
 }
 
@@ -177,7 +181,7 @@ double idmBefore(const StopLine& line, const DrivingStyle& style, double speed, 
   obstacle.distance = line.distance;
   obstacle.minimum_gap = line.minimum_gap;
   obstacle.time_headway = line.time_headway;
-  return idmSpeed(speed, desiredBehind(style, speed, desired), obstacle, parametersOf(style));
+  return idmBehind(style, obstacle, speed, desired);
 }
 
 }  // namespace cdiff::planners

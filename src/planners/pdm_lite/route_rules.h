@@ -6,6 +6,7 @@
 
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "planners/pdm_lite/idm.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 
 namespace cdiff::planners {
@@ -62,6 +63,10 @@ double freeSpeed(const DrivingStyle& style, double speed, double desired);
 /// IDM speed behind a leader, or a bicycle in the way [m/s].
 double idmBehind(const DrivingStyle& style, const traffic::Vehicle& self,
                  const traffic::Vehicle& leader, double desired);
+
+/// IDM speed behind something ahead, with its own gap and headway [m/s].
+double idmBehind(const DrivingStyle& style, const IdmObstacle& obstacle, double speed,
+                 double desired);
 
 /// A stop line: where it is and how far before it to stand.
 struct StopLine {
