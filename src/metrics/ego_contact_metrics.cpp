@@ -115,10 +115,10 @@ const MeasureDefinition known::kEgoStruckStanding = {
     false,
     kOverEgoKilometers,
 };
-const MeasureDefinition known::kEgoAvoidable = {
-    "ego_contacts_avoidable",
-    "/ego/avoidable_contacts",
-    "Contacts that the ego could have avoided",
+const MeasureDefinition known::kEgoBrakingAvoids = {
+    "ego_contacts_braking_avoids",
+    "/ego/contacts_braking_avoids",
+    "Contacts that braking alone avoids",
     "count",
     Direction::kLowerIsBetter,
     Subject::kEgo,
@@ -191,10 +191,10 @@ constexpr MeasureDefinition kEgoStandingPerKm =
     egoRate("ego_contacts_standing_per_km", "/ego/struck_standing_per_km",
             "Contacts with a standing ego per km", Direction::kLowerIsBetter,
             "1000 x ego_contacts_standing / distance driven by the ego in meters.");
-constexpr MeasureDefinition kAvoidablePerKm =
-    egoRate("ego_contacts_avoidable_per_km", "/ego/avoidable_contacts_per_km",
-            "Contacts that the ego could have avoided, per km", Direction::kLowerIsBetter,
-            "1000 x ego_contacts_avoidable / distance driven by the ego in meters.");
+constexpr MeasureDefinition kBrakingAvoidsPerKm =
+    egoRate("ego_contacts_braking_avoids_per_km", "/ego/contacts_braking_avoids_per_km",
+            "Contacts that braking alone avoids, per km", Direction::kLowerIsBetter,
+            "1000 x ego_contacts_braking_avoids / distance driven by the ego in meters.");
 
 /// Who struck whom in the contacts of the ego, and how many of them it could have helped.
 class EgoContactKinds final : public Metric {
@@ -206,7 +206,7 @@ class EgoContactKinds final : public Metric {
     for (const ContactSighting& contact : tick.contacts) count(contact);
     for (const EgoContact& contact : tick.ego_contacts) {
       if (contact.ego_speed < standing_speed_) ++standing_;
-      if (contact.avoidable) ++avoidable_;
+      if (contact.braking_avoids) ++braking_avoids_;
     }
   }
 
@@ -217,7 +217,7 @@ class EgoContactKinds final : public Metric {
     set(sink, kEgoStruckBackground, kEgoStruckBackgroundPerKm, struck_background_);
     set(sink, kEgoByBackground, kEgoByBackgroundPerKm, by_background_);
     set(sink, known::kEgoStruckStanding, kEgoStandingPerKm, standing_);
-    set(sink, known::kEgoAvoidable, kAvoidablePerKm, avoidable_);
+    set(sink, known::kEgoBrakingAvoids, kBrakingAvoidsPerKm, braking_avoids_);
   }
 
  private:
@@ -258,18 +258,19 @@ class EgoContactKinds final : public Metric {
   std::size_t struck_background_ = 0;
   std::size_t by_background_ = 0;
   std::size_t standing_ = 0;
-  std::size_t avoidable_ = 0;
+  std::size_t braking_avoids_ = 0;
 };
 
 }  // namespace
 
 MetricDescriptor egoContactsMetric() {
   return {"ego_contacts",
-          "Who struck whom in the ego's contacts, with the ego standing, and avoidable by braking.",
+          "Who struck whom in the ego's contacts, with the ego standing, and what braking alone "
+          "avoids.",
           {kContactsPerKm, known::kEgoStruckCbvs, kStruckCbvsPerKm, known::kEgoStruckByCbvs,
            kByCbvsPerKm, kEgoStruckBackground, kEgoStruckBackgroundPerKm, kEgoByBackground,
            kEgoByBackgroundPerKm, known::kEgoStruckStanding, kEgoStandingPerKm,
-           known::kEgoAvoidable, kAvoidablePerKm},
+           known::kEgoBrakingAvoids, kBrakingAvoidsPerKm},
           [](const MetricContext& context) {
             return std::make_unique<EgoContactKinds>(
                 context.options.infractions.collision_minimum_speed);

@@ -26,7 +26,7 @@ extern const MeasureDefinition kCbvStanding;
 extern const MeasureDefinition kCbvWrongWay;
 extern const MeasureDefinition kContactsAtFault;
 extern const MeasureDefinition kDrivingScore;
-extern const MeasureDefinition kEgoAvoidable;
+extern const MeasureDefinition kEgoBrakingAvoids;
 extern const MeasureDefinition kEgoCollisions;
 extern const MeasureDefinition kEgoDistance;
 extern const MeasureDefinition kEgoOffRoad;

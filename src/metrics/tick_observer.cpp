@@ -121,7 +121,7 @@ void TickObserver::addContacts(MetricTick& tick) {
                            ego_contacts_.contacts().end());
   avoidance_.observe(tick.snapshot, tick.ego_arc_length);
   for (EgoContact& contact : tick.ego_contacts)
-    contact.avoidable = avoidance_.avoidable(contact.partner);
+    contact.braking_avoids = avoidance_.avoids(contact.partner);
 }
 
 void TickObserver::addCbvs(MetricTick& tick) {

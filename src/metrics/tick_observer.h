@@ -8,7 +8,7 @@
 
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/formulas/contact_avoidance.h"
+#include "metrics/formulas/braking_avoidance.h"
 #include "metrics/formulas/contact_fault.h"
 
 namespace cdiff::metrics {
@@ -37,7 +37,7 @@ class TickObserver {
   const map::DrivableArea& drivable_area_;
   std::optional<map::RouteProgress> progress_;
   EgoContacts ego_contacts_;
-  ContactAvoidance avoidance_;
+  BrakingAvoidance avoidance_;
   std::string ego_id_;                                     ///< empty before the first tick
   std::map<std::string, Eigen::Vector2d> last_positions_;  ///< of the CBVs of the last tick
 };

@@ -164,7 +164,7 @@ Markup contactTable(const record::SessionResult& result) {
   const auto& all = result.timeline.contacts();
   if (all.empty()) return pageNote("No vehicles touched.");
   HtmlTable table({"#Time [s]", "Vehicle", "Vehicle", "Ego at fault", "Why", "#Ego [m/s]",
-                   "#Other [m/s]", "Avoidable by braking"});
+                   "#Other [m/s]", "Braking avoids it"});
   auto own = result.measures.ego_contacts.begin();  // in the order of `all`
   for (const record::TimelineContact& contact : all) {
     std::vector<Markup> cells = {fixed(contact.time, 2), contact.first, contact.second};
@@ -174,7 +174,7 @@ Markup contactTable(const record::SessionResult& result) {
     if (ego) {
       cells.insert(cells.end(),
                    {own->ego_at_fault ? "yes" : "no", own->reason, fixed(own->ego_speed, 1),
-                    fixed(own->partner_speed, 1), own->avoidable ? "yes" : "no"});
+                    fixed(own->partner_speed, 1), own->braking_avoids ? "yes" : "no"});
       ++own;
     } else {
       cells.insert(cells.end(), {"–", "", "", "", ""});

@@ -140,8 +140,8 @@ std::string measureRows(const metrics::SessionMeasures& measures) {
          row("  who struck whom", "ego struck CBVs " + count(known::kEgoStruckCbvs) +
                                       ", CBVs struck ego " + count(known::kEgoStruckByCbvs) +
                                       "; ego standing " + count(known::kEgoStruckStanding) +
-                                      ", avoidable " + count(known::kEgoAvoidable) + "; in " +
-                                      fixed(known::kEgoDistance) + " m") +
+                                      ", braking avoids " + count(known::kEgoBrakingAvoids) +
+                                      "; in " + fixed(known::kEgoDistance) + " m") +
          row("CBVs",
              count(known::kCbvCount) + " over " + count(known::kCbvDecisions) + " decisions") +
          row("CBV collisions", count(known::kCbvCollisions) + " (" +

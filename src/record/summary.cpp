@@ -28,7 +28,7 @@ Json contactList(const std::vector<metrics::EgoContact>& contacts) {
                     {"other_side", contact.partner_side},
                     {"x", contact.x},
                     {"y", contact.y},
-                    {"avoidable", contact.avoidable}});
+                    {"braking_avoids", contact.braking_avoids}});
   }
   return list;
 }

@@ -37,7 +37,7 @@ class EgoContactsMetric : public ::testing::Test {
     Counts values;
     for (const char* name :
          {"ego_contacts_struck_cbv", "ego_contacts_by_cbv", "ego_contacts_struck_background",
-          "ego_contacts_by_background", "ego_contacts_standing", "ego_contacts_avoidable"})
+          "ego_contacts_by_background", "ego_contacts_standing", "ego_contacts_braking_avoids"})
       values.push_back(measures.at(name).value.value_or(-1.0));
     return values;
   }
@@ -75,7 +75,7 @@ TEST_F(EgoContactsMetric, ABackgroundVehicleStrikesAStandingEgo) {
 }
 
 TEST_F(EgoContactsMetric, AnEgoThatDrivesIntoWhatItSawCouldHaveAvoidedIt) {
-  // Standing 60 m ahead of an ego at 8 m/s, as in test_contact_avoidance.cpp.
+  // Standing 60 m ahead of an ego at 8 m/s, as in test_braking_avoidance.cpp.
   const traffic::Vehicle other = background("v", 60, 0, 0);
   for (std::uint64_t tick = 0; tick <= 138; ++tick) {
     auto at = test::snapshot(tick, {ego(0.4 * static_cast<double>(tick), 0, 8), other});
@@ -85,8 +85,8 @@ TEST_F(EgoContactsMetric, AnEgoThatDrivesIntoWhatItSawCouldHaveAvoidedIt) {
   EXPECT_EQ(counts(), (Counts{0, 0, 1, 0, 0, 1}));
   const SessionMeasures measures = metrics_.measures();
   ASSERT_EQ(measures.ego_contacts.size(), 1U);
-  EXPECT_TRUE(measures.ego_contacts.front().avoidable);
-  EXPECT_NEAR(*measures.at("ego_contacts_avoidable_per_km").value, 1000.0 / 55.2, 1e-9);
+  EXPECT_TRUE(measures.ego_contacts.front().braking_avoids);
+  EXPECT_NEAR(*measures.at("ego_contacts_braking_avoids_per_km").value, 1000.0 / 55.2, 1e-9);
 }
 
 TEST_F(EgoContactsMetric, GivesReasonsWithoutEgoAndWithoutMotion) {

@@ -51,7 +51,7 @@ TEST_F(SessionMetricsTest, GivesReasonsForAnEmptySession) {
                            "cbv_standing_free",
                            "cbv_standing_free_percent",
                            "cbv_wrong_way_percent",
-                           "ego_contacts_avoidable_per_km",
+                           "ego_contacts_braking_avoids_per_km",
                            "ego_distance_m",
                            "ego_driving_score_under_attack",
                            "ttc_cbv_set_mean_s",

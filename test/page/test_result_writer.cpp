@@ -122,8 +122,8 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                           "struck_by_background_per_km",
                                           "struck_standing",
                                           "struck_standing_per_km",
-                                          "avoidable_contacts",
-                                          "avoidable_contacts_per_km",
+                                          "contacts_braking_avoids",
+                                          "contacts_braking_avoids_per_km",
                                           "off_road_percent",
                                           "distance_m"}));
   EXPECT_EQ(keysOf(summary["cbv"]), Keys({"count",

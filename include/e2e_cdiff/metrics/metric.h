@@ -126,18 +126,18 @@ struct ContactSighting {
 
 /// A contact of the ego and who is at fault (docs/protocols.md).
 struct EgoContact {
-  std::uint64_t tick = 0;      ///< first tick with overlap
-  double seconds = 0.0;        ///< its time [s]
-  std::string partner;         ///< id of the other vehicle
-  bool ego_at_fault = false;   ///< by the rules of docs/protocols.md
-  std::string reason;          ///< why, in a short sentence
-  double ego_speed = 0.0;      ///< at that tick [m/s]
-  double partner_speed = 0.0;  ///< [m/s]
-  std::string ego_side;        ///< "front", "rear", "left side", "right side"; empty: not known
-  std::string partner_side;    ///< likewise
-  double x = 0.0;              ///< place of the contact, map frame [m]
-  double y = 0.0;              ///< [m]
-  bool avoidable = false;  ///< whether the ego could have avoided it by braking (docs/metrics.md)
+  std::uint64_t tick = 0;       ///< first tick with overlap
+  double seconds = 0.0;         ///< its time [s]
+  std::string partner;          ///< id of the other vehicle
+  bool ego_at_fault = false;    ///< by the rules of docs/protocols.md
+  std::string reason;           ///< why, in a short sentence
+  double ego_speed = 0.0;       ///< at that tick [m/s]
+  double partner_speed = 0.0;   ///< [m/s]
+  std::string ego_side;         ///< "front", "rear", "left side", "right side"; empty: not known
+  std::string partner_side;     ///< likewise
+  double x = 0.0;               ///< place of the contact, map frame [m]
+  double y = 0.0;               ///< [m]
+  bool braking_avoids = false;  ///< whether braking alone would have avoided it (docs/metrics.md)
 };
 
 /// One tick as metrics see it: the snapshot, the selection, and what several metrics need of them

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/formulas/contact_avoidance.h"
+#include "metrics/formulas/braking_avoidance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ OrientedBox straightAhead(const Vehicle& ego, double length) {
 
 }  // namespace
 
-void ContactAvoidance::observe(const traffic::TrafficSnapshot& snapshot, double ego_arc_length) {
+void BrakingAvoidance::observe(const traffic::TrafficSnapshot& snapshot, double ego_arc_length) {
   const Vehicle* ego = snapshot.ego();
   if (ego == nullptr || !hasFinitePose(*ego)) {
     intruders_.clear();
@@ -41,7 +41,7 @@ void ContactAvoidance::observe(const traffic::TrafficSnapshot& snapshot, double 
   follow(snapshot, *ego, sweptPath(*ego, ego_arc_length));
 }
 
-std::vector<OrientedBox> ContactAvoidance::sweptPath(const Vehicle& ego,
+std::vector<OrientedBox> BrakingAvoidance::sweptPath(const Vehicle& ego,
                                                      double ego_arc_length) const {
   const double speed = ego.state.speed;
   const double ahead = 0.5 * ego.dimensions.length + speed * (kReaction + speed / kDeceleration);
@@ -60,7 +60,7 @@ std::vector<OrientedBox> ContactAvoidance::sweptPath(const Vehicle& ego,
 }
 
 /// Intruders that have left the path are forgotten, and the ego's places with the last of them.
-void ContactAvoidance::follow(const traffic::TrafficSnapshot& snapshot, const Vehicle& ego,
+void BrakingAvoidance::follow(const traffic::TrafficSnapshot& snapshot, const Vehicle& ego,
                               const std::vector<OrientedBox>& swept) {
   std::map<std::string, Intruder> intruders;
   std::vector<const Vehicle*> entering;
@@ -83,7 +83,7 @@ void ContactAvoidance::follow(const traffic::TrafficSnapshot& snapshot, const Ve
   if (!intruders_.empty()) place(snapshot.time, ego);
 }
 
-void ContactAvoidance::place(double time, const Vehicle& ego) {
+void BrakingAvoidance::place(double time, const Vehicle& ego) {
   double distance = 0.0;
   if (!places_.empty()) {
     distance = places_.back().distance + (ego.state.position - places_.back().box.center).norm();
@@ -91,14 +91,14 @@ void ContactAvoidance::place(double time, const Vehicle& ego) {
   places_.push_back({time, ego.box(), ego.state.speed, distance});
 }
 
-std::size_t ContactAvoidance::brakingPlace(const Intruder& intruder) const {
+std::size_t BrakingAvoidance::brakingPlace(const Intruder& intruder) const {
   const double begin = places_[intruder.entered].time + kReaction - kSameInstant;
   const auto found = std::find_if(places_.begin(), places_.end(),
                                   [&](const EgoPlace& place) { return place.time >= begin; });
   return static_cast<std::size_t>(found - places_.begin());
 }
 
-OrientedBox ContactAvoidance::boxAt(double distance) const {
+OrientedBox BrakingAvoidance::boxAt(double distance) const {
   const auto after =
       std::upper_bound(places_.begin(), places_.end(), distance,
                        [](double value, const EgoPlace& place) { return value < place.distance; });
@@ -115,13 +115,13 @@ OrientedBox ContactAvoidance::boxAt(double distance) const {
   return box;
 }
 
-double ContactAvoidance::brakedDistance(std::size_t braking, double time) const {
+double BrakingAvoidance::brakedDistance(std::size_t braking, double time) const {
   const EgoPlace& begin = places_[braking];
   const double since = std::min(time - begin.time, begin.speed / kDeceleration);
   return begin.distance + begin.speed * since - 0.5 * kDeceleration * since * since;
 }
 
-bool ContactAvoidance::meetsUntilContact(const Intruder& intruder, std::size_t braking) const {
+bool BrakingAvoidance::meetsUntilContact(const Intruder& intruder, std::size_t braking) const {
   for (std::size_t i = braking; i < places_.size(); ++i) {
     const double distance = std::min(places_[i].distance, brakedDistance(braking, places_[i].time));
     if (overlap(boxAt(distance), intruder.boxes[i - intruder.entered])) return true;
@@ -129,7 +129,7 @@ bool ContactAvoidance::meetsUntilContact(const Intruder& intruder, std::size_t b
   return false;
 }
 
-bool ContactAvoidance::meetsAfterContact(const Intruder& intruder, std::size_t braking) const {
+bool BrakingAvoidance::meetsAfterContact(const Intruder& intruder, std::size_t braking) const {
   const double contact = places_.back().time;
   const double step = contact - places_[places_.size() - 2].time;
   const double stop = places_[braking].time + places_[braking].speed / kDeceleration;
@@ -141,7 +141,7 @@ bool ContactAvoidance::meetsAfterContact(const Intruder& intruder, std::size_t b
   return false;
 }
 
-bool ContactAvoidance::avoidable(const std::string& partner) const {
+bool BrakingAvoidance::avoids(const std::string& partner) const {
   const auto found = intruders_.find(partner);
   if (found == intruders_.end()) return false;
   const Intruder& intruder = found->second;

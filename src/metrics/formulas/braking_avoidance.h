@@ -13,7 +13,8 @@
 
 namespace cdiff::metrics {
 
-/// Whether the ego could have avoided a contact by braking (map frame, SI units; docs/metrics.md).
+/// Whether braking alone would have spared the ego a contact (map frame, SI units;
+/// docs/metrics.md).
 ///
 /// The ego's swept path at a tick: its own box, and the strip of its width along its route from its
 /// center to as far before its front as it comes at its speed v in the time that it needs to stop,
@@ -28,17 +29,17 @@ namespace cdiff::metrics {
 ///     s(t) = min(s as driven, s(t_b) + v_b tau - b tau^2 / 2),   tau = min(t - t_b, v_b / b)
 ///
 /// (after the contact straight ahead). The other keeps its poses up to the contact and then its
-/// velocity. Avoidable: t_b is before the contact, and the boxes overlap at no tick from t_b until
-/// the contact or, where that is later, until the ego stands.
-class ContactAvoidance {
+/// velocity. It is avoided: t_b is before the contact, and the boxes overlap at no tick from t_b
+/// until the contact or, where that is later, until the ego stands.
+class BrakingAvoidance {
  public:
   /// The route must outlive the object; it may be empty.
-  explicit ContactAvoidance(const map::Route& ego_route) : route_(ego_route) {}
+  explicit BrakingAvoidance(const map::Route& ego_route) : route_(ego_route) {}
 
   /// Ticks in order; `ego_arc_length` is about where the ego is on its route [m].
   void observe(const traffic::TrafficSnapshot& snapshot, double ego_arc_length);
   /// Of a contact of the ego with this vehicle at the last observed tick.
-  bool avoidable(const std::string& partner) const;
+  bool avoids(const std::string& partner) const;
 
  private:
   struct EgoPlace {
