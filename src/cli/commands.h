@@ -24,6 +24,7 @@ void addReportCommand(CLI::App& program, int& exit_code);
 void addRealismCommand(CLI::App& program, int& exit_code);
 void addSuiteCommand(CLI::App& program, int& exit_code);
 void addTuneCommand(CLI::App& program, int& exit_code);
+void addWhatIfCommand(CLI::App& program, int& exit_code);
 /// Where the program is built with ROS.
 void addReplayCommand(CLI::App& program, int& exit_code);
 void addCollectCommand(CLI::App& program, int& exit_code);

@@ -112,7 +112,7 @@ Markup egoTiles(const record::SessionResult& result) {
               "",
               std::to_string(measures.count(known::kContactsAtFault)) + " its fault, " +
                   std::to_string(measures.count(known::kCbvEgoCollisions)) + " with CBVs, " +
-                  std::to_string(measures.count(known::kEgoAvoidable)) + " avoidable");
+                  std::to_string(measures.count(known::kEgoBrakingAvoids)) + " avoided by braking");
 }
 
 Markup cbvTiles(const metrics::SessionMeasures& measures) {
@@ -151,6 +151,15 @@ Markup configuration(const record::SessionResult& result) {
   return originTable(result) + element("details", {}, content) + "\n";
 }
 
+/// What other drivers would have come to; `cdiff what_if` fills it when the session is over.
+Markup whatIf(const std::map<std::string, std::string>& answers) {
+  Markup rows;
+  for (const auto& [address, text] : answers)
+    rows += element("li", {}, element("a", {{"href", address}}, text)) + "\n";
+  const Markup list = answers.empty() ? Markup() : element("ul", {}, "\n" + rows);
+  return element("div", {{"id", "what-if"}}, list) + "\n";
+}
+
 Markup sections(const record::SessionResult& result, const MapCanvas& canvas) {
   return pageSection("What happened", stageHtml(result, canvas)) +
          pageSection("Over time", sessionCharts(result)) +
@@ -163,7 +172,7 @@ Markup sections(const record::SessionResult& result, const MapCanvas& canvas) {
          pageSection("Infractions of the ego", infractionTable(result.measures)) +
          pageSection("Critical background vehicles", selectionTable(result)) +
          pageSection("Why others were no CBVs", rejectionTable(result.cbv)) +
-         pageSection("Contacts", contactTable(result)) +
+         pageSection("Contacts", contactTable(result) + whatIf({})) +
          pageSection("Planner latency", latencyTable(result.latencies)) +
          pageSection("Late answers", lateTable(result.late)) +
          pageSection("Faults", faultTable(result.faults)) +
@@ -179,6 +188,16 @@ std::string htmlReport(const record::SessionResult& result) {
       banner(result) + lateBanner(result) + tiles(result) + sections(result, canvas),
       core::jsonElement("playback", playbackJson(result, canvas)) +
           core::scriptElement(kReportScript));
+}
+
+std::optional<std::string> withWhatIf(const std::string& page,
+                                      const std::map<std::string, std::string>& answers) {
+  const std::string begin = "<div id=\"what-if\">";
+  const std::string end = "</div>\n";
+  const std::size_t from = page.find(begin);
+  const std::size_t to = from == std::string::npos ? from : page.find(end, from);
+  if (to == std::string::npos) return std::nullopt;
+  return page.substr(0, from) + whatIf(answers).str() + page.substr(to + end.size());
 }
 
 }  // namespace cdiff::page

@@ -27,7 +27,32 @@ void appendNumber(std::string& row, double value) {
   row += core::formatNumber(value);
 }
 
+void appendRow(std::string& text, const std::string& tick, const traffic::Vehicle& vehicle) {
+  text += tick;
+  text += ',';
+  text += core::csvCell(vehicle.id);
+  text += ',';
+  text += traffic::toText(vehicle.role);
+  appendNumber(text, vehicle.state.position.x());
+  appendNumber(text, vehicle.state.position.y());
+  appendNumber(text, vehicle.state.heading);
+  appendNumber(text, vehicle.state.speed);
+  if (vehicle.applied_action) {
+    appendNumber(text, vehicle.applied_action->throttle);
+    appendNumber(text, vehicle.applied_action->steer);
+    appendNumber(text, vehicle.applied_action->brake);
+  } else {
+    text += ",,,";
+  }
+  text += '\n';
+}
+
 }  // namespace
+
+void appendTraceRows(std::string& text, const traffic::TrafficSnapshot& snapshot) {
+  const std::string tick = std::to_string(snapshot.tick);
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) appendRow(text, tick, vehicle);
+}
 
 TraceWriter::TraceWriter(core::OutputFolder& folder) : file_(folder, "trace.csv") {
   buffer_.reserve(2 * kBufferSize);
@@ -35,8 +60,7 @@ TraceWriter::TraceWriter(core::OutputFolder& folder) : file_(folder, "trace.csv"
 }
 
 void TraceWriter::write(const traffic::TrafficSnapshot& snapshot) {
-  const std::string tick = std::to_string(snapshot.tick);
-  for (const traffic::Vehicle& vehicle : snapshot.vehicles) writeRow(tick, vehicle);
+  appendTraceRows(buffer_, snapshot);
   if (buffer_.size() >= kBufferSize) flush();
 }
 
@@ -44,26 +68,6 @@ std::string TraceWriter::finish() {
   flush();
   file_.finish();
   return hash_.finish();
-}
-
-void TraceWriter::writeRow(const std::string& tick, const traffic::Vehicle& vehicle) {
-  buffer_ += tick;
-  buffer_ += ',';
-  buffer_ += core::csvCell(vehicle.id);
-  buffer_ += ',';
-  buffer_ += traffic::toText(vehicle.role);
-  appendNumber(buffer_, vehicle.state.position.x());
-  appendNumber(buffer_, vehicle.state.position.y());
-  appendNumber(buffer_, vehicle.state.heading);
-  appendNumber(buffer_, vehicle.state.speed);
-  if (vehicle.applied_action) {
-    appendNumber(buffer_, vehicle.applied_action->throttle);
-    appendNumber(buffer_, vehicle.applied_action->steer);
-    appendNumber(buffer_, vehicle.applied_action->brake);
-  } else {
-    buffer_ += ",,,";
-  }
-  buffer_ += '\n';
 }
 
 void TraceWriter::flush() {
@@ -180,8 +184,10 @@ void requireFreeFolder(const fs::path& folder, bool overwrite) {
 ResultFolder::ResultFolder(const fs::path& folder, const std::string& program, bool overwrite)
     : folder_(folder, program) {
   requireFree(folder, overwrite);
+  if (core::OutputFolder::lists(folder, kWhatIfFolder) && core::isFolder(folder / kWhatIfFolder))
+    core::OutputFolder(folder / kWhatIfFolder).clear();
   std::set<std::string> earlier(kSessionFiles.begin(), kSessionFiles.end());
-  earlier.insert({kExitCodeFile, kReserveFolder});
+  earlier.insert({kExitCodeFile, kReserveFolder, kWhatIfFolder});
   folder_.remove(earlier);
   folder_.removeUnfinished();
 }

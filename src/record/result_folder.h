@@ -18,8 +18,15 @@ namespace cdiff::record {
 
 // The result folder of a session, and its trace.csv.
 
+/// Folder of a session's result in which `cdiff what_if` keeps its answers.
+inline constexpr const char* kWhatIfFolder = "what_if";
+
 /// First line of the trace.
 inline constexpr const char* kTraceHeader = "tick,id,role,x,y,heading,speed,throttle,steer,brake\n";
+
+/// Appends the rows of one tick in the snapshot's order. Command cells of vehicles that SUMO drives
+/// stay empty.
+void appendTraceRows(std::string& text, const traffic::TrafficSnapshot& snapshot);
 
 /// Writes trace.csv: a row per tick and vehicle (map frame, SI units, shortest decimals that read
 /// back to the same number), streamed to the disk; it gets its name when it is whole.
@@ -28,14 +35,12 @@ class TraceWriter {
   /// Opens the file. `folder` must outlive the object. Throws InputError naming the path.
   explicit TraceWriter(core::OutputFolder& folder);
 
-  /// Appends the rows of one tick in the snapshot's order. Command cells of vehicles that SUMO
-  /// drives stay empty.
+  /// Appends the rows of one tick.
   void write(const traffic::TrafficSnapshot& snapshot);
   /// Gives the file its name and answers its SHA-256. Call once.
   std::string finish();
 
  private:
-  void writeRow(const std::string& tick, const traffic::Vehicle& vehicle);
   void flush();
 
   core::PendingFile file_;
@@ -71,8 +76,8 @@ void requireFreeFolder(const std::filesystem::path& folder, bool overwrite);
 class ResultFolder {
  public:
   /// Makes and locks the folder, checks it as requireFreeFolder does, and removes the files that an
-  /// earlier session made. `program` names this writer to a second one ("cdiff run"). Throws
-  /// InputError; nothing is removed then.
+  /// earlier session made, with the answers about it. `program` names this writer to a second one
+  /// ("cdiff run"). Throws InputError; nothing is removed then.
   ResultFolder(const std::filesystem::path& folder, const std::string& program, bool overwrite);
 
  private:

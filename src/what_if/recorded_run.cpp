@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "what_if/recorded_run.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/csv.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "record/result_folder.h"
+#include "record/session_yaml.h"
+
+namespace cdiff::what_if {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+constexpr const char* kScenarioLine = "scenario:\n";
+
+/// Values of session.yaml above its scenario, by "key" or "section.key", as written.
+std::map<std::string, std::string> factsOf(const std::string& yaml) {
+  std::map<std::string, std::string> facts;
+  std::string section;
+  for (const std::string& line : core::splitText(yaml.substr(0, yaml.find(kScenarioLine)), '\n')) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos || line.compare(0, 4, "    ") == 0) continue;
+    const bool inside = line.compare(0, 2, "  ") == 0;
+    const std::string key = line.substr(inside ? 2 : 0, colon - (inside ? 2 : 0));
+    const std::string value = colon + 2 < line.size() ? line.substr(colon + 2) : "";
+    if (!inside) section = key;
+    if (!value.empty()) facts[inside ? section + "." + key : key] = value;
+  }
+  return facts;
+}
+
+/// The scenario of session.yaml, which is written one level deeper than a scenario file.
+std::string scenarioText(const std::string& yaml) {
+  std::string text;
+  for (const std::string& line : core::splitText(yaml.substr(yaml.find(kScenarioLine)), '\n')) {
+    if (line.compare(0, 2, "  ") == 0) text += line.substr(2) + "\n";
+  }
+  return text;
+}
+
+/// What a key of session.yaml is to people; nullptr where it does not decide how a session runs.
+const char* subjectOf(const std::string& key) {
+  const std::pair<const char*, const char*> subjects[] = {
+      {"package.", "the program"},
+      {"simulator.", "the simulator"},
+      {"network.source_sha256", "the network"},
+      {"network.imported_sha256", "the imported network"},
+      {"libraries.", "a library of the program"},
+      {"processor.instruction_set", "the program's instruction set"},
+      {"inference.cbv_model_files_sha256", "the weights of the CBVs' planner"},
+      {"inference.cbv_", "the inference of the CBVs' planner"}};
+  for (const auto& [prefix, subject] : subjects) {
+    if (key.compare(0, std::string(prefix).size(), prefix) == 0) return subject;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+RecordedRun::RecordedRun(const fs::path& folder) : folder_(folder) {
+  if (!core::isFile(folder / "session.yaml")) {
+    throw InputError("'" + folder.string() +
+                     "' is no result folder of a session: it has no session.yaml" +
+                     (core::isFile(folder / "matrix.yaml")
+                          ? "; it holds a batch: give --all, or one of its folders runs/ID"
+                          : ""));
+  }
+  readSession();
+  readSummary();
+  readTrace();
+}
+
+void RecordedRun::readSession() {
+  const std::string file = (folder_ / "session.yaml").string();
+  const std::string yaml = core::readFile(file, "session", core::kLargestOptionsFile);
+  if (yaml.find(kScenarioLine) == std::string::npos)
+    throw InputError(file + ": key 'scenario' is missing; expected what a session writes");
+  facts_ = factsOf(yaml);
+  core::loadOptions({file + " (scenario)", scenarioText(yaml)}, scenario_);
+  if (facts_.count("recorded_by") > 0) {
+    throw InputError(file +
+                     ": is the result of a replay, which does not say with which weights the "
+                     "session ran; give the result folder of the session itself");
+  }
+  if (facts_["deterministic"] != "true" || scenario_.real_time_factor > 0.0) {
+    throw InputError(file + ": the session was paced by the wall clock (real_time_factor " +
+                     core::formatNumber(scenario_.real_time_factor) +
+                     "), so it cannot be repeated; run it again with real_time_factor 0");
+  }
+  scenario_.at_most = 0.0;
+  scenario_.video = false;
+}
+
+void RecordedRun::readSummary() {
+  const std::string file = (folder_ / "summary.json").string();
+  try {
+    const auto summary = nlohmann::json::parse(core::readFile(file, "summary"));
+    trace_sha256_ = summary.at("trace_sha256");
+    const std::string status = summary.at("status");
+    if (status == "error")
+      throw InputError(file + ": the session broke (status error); what_if needs one that ran");
+    cut_off_ = status == "interrupted";
+    for (const auto& contact : summary.at("ego").at("contacts")) {
+      contacts_.push_back({contacts_.size() + 1, contact.at("tick"), contact.at("seconds"),
+                           contact.at("with"), contact.at("ego_side")});
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError("'" + file + "' is no summary of a session: " + error.what());
+  }
+}
+
+void RecordedRun::readTrace() {
+  const fs::path file = folder_ / "trace.csv";
+  trace_ = core::readFile(file, "trace");
+  if (core::sha256(trace_) != trace_sha256_) {
+    throw InputError("'" + file.string() +
+                     "' is not the trace that summary.json names (trace_sha256); give a result "
+                     "folder as the session left it");
+  }
+  for (record::TraceRow& row : record::readTrace(file)) {
+    last_tick_ = std::max(last_tick_, row.tick);
+    if (row.action) actions_[row.tick][row.id] = *row.action;
+  }
+  for (const core::CsvRow& row : core::csvRows(trace_)) {
+    if (row.line == 1) continue;  // the header
+    const auto tick = core::parseNumber(row.text.substr(0, row.text.find(',')));
+    const auto begin = static_cast<std::size_t>(row.text.data() - trace_.data());
+    const auto [place, added] =
+        rows_.try_emplace(static_cast<std::uint64_t>(tick.value()), begin, 0);
+    place->second.second = begin + row.text.size() + 1;
+  }
+  if (cut_off_ && last_tick_ > 0) --last_tick_;
+}
+
+std::string_view RecordedRun::rowsAt(std::uint64_t tick) const {
+  const auto found = rows_.find(tick);
+  if (found == rows_.end()) return {};
+  const auto& [begin, end] = found->second;
+  return std::string_view(trace_).substr(begin, end - begin);
+}
+
+std::optional<traffic::ControlAction> RecordedRun::actionAt(std::uint64_t tick,
+                                                            const std::string& id) const {
+  const auto next = actions_.find(tick + 1);
+  if (next == actions_.end()) return std::nullopt;
+  const auto found = next->second.find(id);
+  return found == next->second.end() ? std::nullopt
+                                     : std::optional<traffic::ControlAction>(found->second);
+}
+
+void RecordedRun::requireUnchanged(const session::SessionSetup& setup,
+                                   const std::string& simulator_version) const {
+  auto now = factsOf(record::sessionYaml(setup, {"cdiff what_if", simulator_version, true}));
+  for (const auto& [key, value] : facts_) {
+    const char* subject = subjectOf(key);
+    if (subject == nullptr || now[key] == value) continue;
+    throw InputError((folder_ / "session.yaml").string() + ": key '" + key + "' is " + value +
+                     ", but here it is " + (now[key].empty() ? "absent" : now[key]) + ": " +
+                     subject + " is not what the session ran with; run the session again, or use " +
+                     "what it ran with");
+  }
+}
+
+}  // namespace cdiff::what_if
