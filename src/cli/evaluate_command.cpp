@@ -20,6 +20,7 @@
 #include "evaluation/matrix.h"
 #include "evaluation/paper/table_definitions.h"
 #include "evaluation/run_plan.h"
+#include "evaluation/separation/ego_ranking.h"
 #include "evaluation/suite_selection.h"
 
 namespace cdiff::cli {
@@ -41,6 +42,7 @@ struct EvaluateArguments {
   std::vector<std::string> seeds;
   std::vector<std::string> set;
   std::vector<std::string> only;
+  std::string ego;
   int jobs = 1;
   bool resume = false;
   bool overwrite = false;
@@ -48,9 +50,9 @@ struct EvaluateArguments {
 
 constexpr const char* kMatrixFile = "matrix.yaml";
 /// What a batch writes beside its runs, and what --overwrite replaces.
-const std::vector<std::string> kBatchFiles = {"runs.csv",    "summary.json", "summary.md",
-                                              "junit.xml",   "index.html",   "table.md",
-                                              "compare.csv", kMatrixFile};
+const std::vector<std::string> kBatchFiles = {
+    "runs.csv", "summary.json", "summary.md",      "junit.xml",        "index.html",
+    "table.md", "compare.csv",  "ego_ranking.csv", "ego_ranking.html", kMatrixFile};
 const std::vector<std::string> kBatchFolders = {"runs", "tables", "figures"};
 
 /// The Bench2Drive routes of the arguments.
@@ -90,11 +92,27 @@ MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
   return matrix;
 }
 
+/// One more ego of a matrix, "NAME" or "NAME key=value ...": a variant where its egos are variants,
+/// else one more planner.
+void addEgo(const std::string& ego, MatrixOptions& matrix) {
+  const std::string name = ego.substr(0, ego.find(' '));
+  if (!matrix.combinations.empty()) {
+    throw InputError("--ego " + name +
+                     ": the matrix names combinations; expected one with ego_planners or variants");
+  }
+  if (matrix.variants.empty() && name == ego) {
+    matrix.ego_planners.push_back(name);
+  } else {
+    matrix.variants.push_back(name + ": ego_planner=" + ego);
+  }
+}
+
 MatrixOptions matrixOf(const EvaluateArguments& arguments) {
   MatrixOptions matrix = baseMatrix(arguments);
   if (!arguments.seeds.empty()) matrix.seeds = arguments.seeds;
   if (!arguments.open_sealed.empty()) matrix.open_sealed = arguments.open_sealed;
   matrix.set.insert(matrix.set.end(), arguments.set.begin(), arguments.set.end());
+  if (!arguments.ego.empty()) addEgo(arguments.ego, matrix);
   return matrix;
 }
 
@@ -120,6 +138,9 @@ void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
 void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool overwrite) {
   if (overwrite) {
     output.remove({kBatchFiles.begin(), kBatchFiles.end()});
+    for (const std::string& name : output.names()) {
+      if (name.rfind("what_if_", 0) == 0) output.remove({name});
+    }
     for (const std::string& name : kBatchFolders) {
       // One that was the user's stays, and what the program made in it goes.
       if (fs::is_directory(output.path() / name)) core::OutputFolder(output.path() / name).clear();
@@ -203,6 +224,7 @@ int evaluate(const EvaluateArguments& arguments) {
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
   std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;
+  if (matrix.ego_ranking) text += evaluation::writeEgoRanking({results}, matrix.name);
   if (arguments.matrix.empty() && !arguments.bench2drive.empty()) {
     text = routeTable(records, arguments.bench2drive, results) + repeated;
     output.write("table.md", text);
@@ -245,6 +267,9 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
                    "Now only runs with these levels of a factor, as seed=1,2; may be repeated. The "
                    "others are left for --resume")
       ->allow_extra_args(false);
+  command->add_option("--ego", arguments->ego,
+                      "One more ego of the matrix: a planner, also one of a plug-in, with options "
+                      "as 'NAME key=value ...'");
   command->add_option("--jobs", arguments->jobs, "Sessions at a time")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));

@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "core/file.h"
 #include "core/output_folder.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison/comparison.h"
@@ -18,6 +19,7 @@
 #include "evaluation/matrix.h"
 #include "evaluation/paper/findings.h"
 #include "evaluation/pedal_use.h"
+#include "evaluation/separation/ego_ranking.h"
 #include "page/training_pages.h"
 
 namespace cdiff::cli {
@@ -32,6 +34,7 @@ struct ReportArguments {
   std::string pedals;
   std::string doses;
   std::string findings;
+  std::vector<std::string> ego_ranking;
   std::vector<std::string> folders;
   std::vector<std::string> measures;
   std::string factor;
@@ -95,7 +98,8 @@ void requirePairs(const std::vector<evaluation::Comparison>& comparisons,
 }
 
 /// Tables, figures and page of a finished batch again, without running anything.
-int makeTables(const fs::path& results) {
+int makeTables(const ReportArguments& arguments) {
+  const fs::path results = arguments.tables;
   const fs::path file = results / "matrix.yaml";
   if (!core::isFile(file)) {
     throw InputError("'" + results.string() +
@@ -105,6 +109,7 @@ int makeTables(const fs::path& results) {
   core::loadOptions({file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)},
                     matrix);
   evaluation::writeBatchReport(results, matrix.name);
+  if (matrix.ego_ranking) evaluation::writeEgoRanking({results}, matrix.name);
   std::cout << "tables, figures and page: " << (results / "index.html").string() << "\n";
   return ExitCode::kPassed;
 }
@@ -119,31 +124,33 @@ int printDoses(const ReportArguments& arguments) {
   return ExitCode::kPassed;
 }
 
-int report(const ReportArguments& arguments) {
-  const int asked = (arguments.tables.empty() ? 0 : 1) + (arguments.folders.empty() ? 0 : 1) +
-                    (arguments.training.empty() ? 0 : 1) + (arguments.pedals.empty() ? 0 : 1) +
-                    (arguments.doses.empty() ? 0 : 1) + (arguments.findings.empty() ? 0 : 1);
-  if (asked != 1) {
-    throw InputError(
-        "give one of --compare A B, --doses DIR, --findings DIR, --tables DIR, --training DIR and "
-        "--pedals DIR");
-  }
-  if (!arguments.doses.empty()) return printDoses(arguments);
-  if (!arguments.findings.empty()) {
-    std::cout << evaluation::findingsMarkdown(
-        evaluation::findingsOf(evaluation::readBatchRuns(arguments.findings)));
-    return ExitCode::kPassed;
-  }
-  if (!arguments.pedals.empty()) {
-    std::cout << evaluation::pedalMarkdown(evaluation::pedalCounts(arguments.pedals));
-    return ExitCode::kPassed;
-  }
-  if (!arguments.training.empty()) {
-    const fs::path page = writeTrainingPage(arguments.training);
-    std::cout << "curves of the training: " << page.string() << "\n";
-    return ExitCode::kPassed;
-  }
-  if (!arguments.tables.empty()) return makeTables(arguments.tables);
+int printFindings(const ReportArguments& arguments) {
+  std::cout << evaluation::findingsMarkdown(
+      evaluation::findingsOf(evaluation::readBatchRuns(arguments.findings)));
+  return ExitCode::kPassed;
+}
+
+int rankEgos(const ReportArguments& arguments) {
+  const fs::path first = arguments.ego_ranking.front();
+  std::cout << evaluation::writeEgoRanking(
+                   {arguments.ego_ranking.begin(), arguments.ego_ranking.end()},
+                   fs::weakly_canonical(first).filename().string())
+            << "page: " << (first / "ego_ranking.html").string() << "\n";
+  return ExitCode::kPassed;
+}
+
+int countPedals(const ReportArguments& arguments) {
+  std::cout << evaluation::pedalMarkdown(evaluation::pedalCounts(arguments.pedals));
+  return ExitCode::kPassed;
+}
+
+int drawTraining(const ReportArguments& arguments) {
+  const fs::path page = writeTrainingPage(arguments.training);
+  std::cout << "curves of the training: " << page.string() << "\n";
+  return ExitCode::kPassed;
+}
+
+int printComparisons(const ReportArguments& arguments) {
   std::vector<evaluation::Comparison> comparisons = compare(arguments);
   requirePairs(comparisons, arguments);
   evaluation::adjustForNumber(comparisons);
@@ -155,6 +162,33 @@ int report(const ReportArguments& arguments) {
     core::writeFileAtomically(arguments.csv, csv);
   }
   return ExitCode::kPassed;
+}
+
+int report(const ReportArguments& arguments) {
+  struct Asked {
+    bool given;
+    const char* option;
+    int (*answer)(const ReportArguments&);
+  };
+  const Asked options[] = {{!arguments.folders.empty(), "--compare A B", printComparisons},
+                           {!arguments.doses.empty(), "--doses DIR", printDoses},
+                           {!arguments.findings.empty(), "--findings DIR", printFindings},
+                           {!arguments.tables.empty(), "--tables DIR", makeTables},
+                           {!arguments.training.empty(), "--training DIR", drawTraining},
+                           {!arguments.pedals.empty(), "--pedals DIR", countPedals},
+                           {!arguments.ego_ranking.empty(), "--ego-ranking DIR", rankEgos}};
+  const Asked* asked = nullptr;
+  std::vector<std::string> names;
+  for (const Asked& option : options) {
+    names.emplace_back(option.option);
+    if (!option.given) continue;
+    if (asked != nullptr)
+      throw InputError(std::string(asked->option) + " and " + option.option +
+                       " exclude each other");
+    asked = &option;
+  }
+  if (asked == nullptr) throw InputError("give one of " + core::joinText(names, ", "));
+  return asked->answer(arguments);
 }
 
 }  // namespace
@@ -180,7 +214,8 @@ void addReportCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = program.add_subcommand(
       "report",
-      "Compare evaluations run by run; make their tables again; draw a training; count pedals");
+      "Compare evaluations run by run; make their tables again; draw a training; count pedals; "
+      "rank egos");
   command
       ->add_option("--compare", arguments->folders,
                    "Result folders A and B of `cdiff evaluate`, or one with --factor")
@@ -198,6 +233,11 @@ void addReportCommand(CLI::App& program, int& exit_code) {
   command->add_option("--pedals", arguments->pedals,
                       "Print which pedals CBVs were driven with, from the traces of this result "
                       "folder of `cdiff run` or `cdiff evaluate`");
+  command
+      ->add_option("--ego-ranking", arguments->ego_ranking,
+                   "Rank the egos of these result folders of `cdiff evaluate`; also of folders "
+                   "that hold a user's sessions. Writes ego_ranking.html into the first")
+      ->expected(1, 100);
   command->add_option("--factor", arguments->factor, "Compare the levels of this factor");
   command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
   command->add_option("--figure", arguments->measures, "Only this measure; may be repeated")

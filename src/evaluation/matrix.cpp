@@ -65,6 +65,8 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"seeds", "", "Root seeds; empty: the scenario's."}, seeds);
   visitor.integer({"repetitions", "", "Runs of the same seed."}, repetitions, 1, 1000);
   visitor.list({"set", "", "Overrides for every run, each key=value."}, set);
+  visitor.flag({"ego_ranking", "", "Also write ego_ranking.html: contacts of each ego, ranked."},
+               ego_ranking);
   visitor.number({"timeout", "s", "Wall time after which a run is killed."}, timeout, 0.1, 86400.0);
   visitor.integer({"retries", "", "Further attempts when a run's process or SUMO died."}, retries,
                   0, 100);

@@ -44,6 +44,7 @@ struct MatrixOptions {
   std::vector<std::string> seeds;     ///< whole numbers
   std::int64_t repetitions = 1;
   std::vector<std::string> set;  ///< "key=value" each, for every run
+  bool ego_ranking = false;      ///< also write ego_ranking.html
   double timeout = 600.0;        ///< wall time of one run [s]
   std::int64_t retries = 1;      ///< how often a run whose simulator or process died is repeated
 

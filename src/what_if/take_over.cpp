@@ -33,25 +33,25 @@ bool counts(const metrics::EgoContact& contact, const std::string& partner) {
 
 }  // namespace
 
-CourseFollower::CourseFollower(const RecordedRun& run, const session::SessionSetup& setup,
-                               const TakeOver& take_over, std::optional<std::uint64_t> same_until)
-    : run_(run),
-      take_over_(take_over),
-      same_until_(same_until),
+CourseFollower::CourseFollower(const session::SessionSetup& setup, const TakeOver& take_over,
+                               std::optional<RecordedPart> recorded)
+    : take_over_(take_over),
+      recorded_(recorded),
       judged_(&setup.network(), setup.options().protocol.infractions.collision_minimum_speed),
       course_(setup.options().simulation_step) {
   course_.trace = record::kTraceHeader;
 }
 
 void CourseFollower::requireSame(const TrafficSnapshot& snapshot, const std::string& rows) const {
-  const std::string_view recorded = run_.rowsAt(snapshot.tick);
+  const std::string_view recorded = recorded_->run.rowsAt(snapshot.tick);
   if (rows == recorded) return;
   const auto place = static_cast<std::size_t>(
       std::mismatch(rows.begin(), rows.end(), recorded.begin(), recorded.end()).first -
       rows.begin());
-  throw core::Error("'" + run_.folder().string() + "': the session does not repeat: at tick " +
-                    std::to_string(snapshot.tick) + " its trace has '" + lineAt(recorded, place) +
-                    "', now it is '" + lineAt(rows, place) +
+  throw core::Error("'" + recorded_->run.folder().string() +
+                    "': the session does not repeat: at tick " + std::to_string(snapshot.tick) +
+                    " its trace has '" + lineAt(recorded, place) + "', now it is '" +
+                    lineAt(rows, place) +
                     "'; program, machine or files are not those that it ran with: run it again");
 }
 
@@ -79,7 +79,7 @@ void CourseFollower::observe(const session::TickRecord& record) {
   if (snapshot.status == traffic::SessionStatus::kInterrupted) return;  // the last tick again
   std::string rows;
   record::appendTraceRows(rows, snapshot);
-  if (same_until_ && snapshot.tick <= *same_until_) requireSame(snapshot, rows);
+  if (recorded_ && snapshot.tick <= recorded_->last_tick) requireSame(snapshot, rows);
   course_.trace += rows;
   course_.timeline.observe(snapshot);
   snapshots_.push_back(snapshot);
@@ -111,7 +111,7 @@ RecordedCourse repeatRecorded(const RecordedRun& run, const session::SessionSetu
   TakeOver all = take_over;
   all.end_tick = std::min(take_over.end_tick, run.lastTick());
   all.tick = all.end_tick;  // nobody takes over, no contact ends it
-  CourseFollower follower(run, setup, all, all.end_tick);
+  CourseFollower follower(setup, all, RecordedPart{run, all.end_tick});
   session::LoopParts parts;
   parts.selector = makeSelector(setup);
   parts.ego_planner = {std::make_unique<RecordedActions>(run), false};
@@ -122,7 +122,7 @@ RecordedCourse repeatRecorded(const RecordedRun& run, const session::SessionSetu
 
 Course driveClosed(const RecordedRun& run, const Driver& driver, const session::SessionSetup& setup,
                    const TakeOver& take_over) {
-  CourseFollower follower(run, setup, take_over, take_over.tick);
+  CourseFollower follower(setup, take_over, RecordedPart{run, take_over.tick});
   session::LoopParts parts;
   parts.selector = makeSelector(setup);
   parts.ego_planner = {std::make_unique<TakenOverEgo>(run, driver.make(), take_over.tick),
@@ -250,7 +250,7 @@ Course driveOpen(const RecordedRun& run, const Driver& driver, const session::Se
   TakenOverEgo ego(run, driver.make(), take_over.tick);
   std::optional<session::VehicleCameras> cameras;
   if (driver.sees()) cameras.emplace(setup, driver.rigs());
-  CourseFollower follower(run, setup, take_over, std::nullopt);
+  CourseFollower follower(setup, take_over, std::nullopt);
   for (std::uint64_t tick = 0; !follower.stop(); ++tick) {
     const TrafficSnapshot snapshot = world.at(tick);
     if (tick <= take_over.tick) requireSameEgo(snapshot, recorded.snapshots.at(tick));

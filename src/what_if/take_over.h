@@ -38,16 +38,22 @@ struct Course {
   std::string trace;  ///< as trace.csv, up to where the course was followed
 };
 
-/// Follows a session tick by tick: holds it against the recorded trace as long as it must be the
-/// same, and looks for contacts of the ego from the take-over on.
+/// The part of a course that must be as recorded, byte for byte.
+struct RecordedPart {
+  const RecordedRun& run;
+  std::uint64_t last_tick = 0;
+};
+
+/// Follows a session tick by tick: holds it against a recording where it must be the same, and
+/// looks for contacts of the ego from the take-over on.
 class CourseFollower : public session::SessionObserver {
  public:
-  /// `same_until`: last tick whose rows must be those of the recording, byte for byte; nullopt:
-  /// none must. All references must outlive the object.
-  CourseFollower(const RecordedRun& run, const session::SessionSetup& setup,
-                 const TakeOver& take_over, std::optional<std::uint64_t> same_until);
+  /// All references must outlive the object.
+  CourseFollower(const session::SessionSetup& setup, const TakeOver& take_over,
+                 std::optional<RecordedPart> recorded);
 
-  /// Throws core::Error naming the tick and the first row that is not as recorded.
+  /// Throws core::Error naming the tick and the first row that is not as recorded, and
+  /// SimulatorError where the session breaks.
   void observe(const session::TickRecord& record) override;
   /// Set when there is nothing more to see: a contact, or the last tick.
   const std::atomic<bool>& stop() const { return stop_; }
@@ -59,9 +65,8 @@ class CourseFollower : public session::SessionObserver {
   void requireSame(const traffic::TrafficSnapshot& snapshot, const std::string& rows) const;
   void judge(const traffic::TrafficSnapshot& snapshot);
 
-  const RecordedRun& run_;
   TakeOver take_over_;
-  std::optional<std::uint64_t> same_until_;
+  std::optional<RecordedPart> recorded_;
   metrics::EgoContacts judged_;
   std::size_t known_ = 0;  ///< contacts that were judged already
   Course course_;

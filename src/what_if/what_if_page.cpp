@@ -29,8 +29,26 @@ struct Panel {
   std::string title;
   std::string outcome;
   const Course* course;
-  const char* style;  ///< of the ego's line in the chart
+  const char* style;                                          ///< of the ego's line in the chart
+  std::optional<std::pair<double, Eigen::Vector2d>> contact;  ///< (time [s], place [m])
 };
+
+std::optional<std::pair<double, Eigen::Vector2d>> contactOf(const Course& course) {
+  if (!course.contact) return std::nullopt;
+  return std::pair(course.contact->seconds, Eigen::Vector2d(course.contact->x, course.contact->y));
+}
+
+/// The recorded contact, midway between the two.
+std::optional<std::pair<double, Eigen::Vector2d>> recordedContact(const Answer& answer) {
+  if (!answer.question.contact) return std::nullopt;
+  for (const record::TimelineContact& contact : answer.recorded.timeline.contacts()) {
+    const std::string& partner = answer.question.contact->partner;
+    const bool own = contact.first == partner || contact.second == partner;
+    if (own && contact.position && contact.time == answer.question.contact->seconds)
+      return std::pair(contact.time, *contact.position);
+  }
+  return std::nullopt;
+}
 
 std::string outcomeText(const Course& course) {
   std::string text = "no contact";
@@ -49,11 +67,11 @@ std::vector<Panel> panelsOf(const Answer& answer) {
   const std::string recorded = contact ? "contact with " + contact->partner + " at " +
                                              core::formatFixed(contact->seconds, 2) + " s"
                                        : "no contact was named";
-  return {{"As recorded", recorded, &answer.recorded, "bg"},
+  return {{"As recorded", recorded, &answer.recorded, "bg", recordedContact(answer)},
           {answer.driver + ", others answer", outcomeText(answer.closed.course),
-           &answer.closed.course, "ego"},
+           &answer.closed.course, "ego", contactOf(answer.closed.course)},
           {answer.driver + ", others as recorded", outcomeText(answer.open.course),
-           &answer.open.course, "cbv c0"}};
+           &answer.open.course, "cbv c0", contactOf(answer.open.course)}};
 }
 
 bool shown(const record::TimelineFrame& frame, const Answer& answer) {
@@ -96,9 +114,17 @@ Json poseNumbers(const record::TimelineFrame& frame, const Course& course,
   return numbers;
 }
 
+/// Time [s] and place [pixels] of the ego's contact that ends a course; null without one.
+Json contactNumbers(const Panel& panel, const page::MapCanvas& canvas) {
+  if (!panel.contact) return nullptr;
+  const Eigen::Vector2d pixel = canvas.toPixels(panel.contact->second);
+  return {panel.contact->first, std::round(pixel.x()), std::round(pixel.y())};
+}
+
 Json courseJson(const Panel& panel, const Answer& answer, const page::MapCanvas& canvas) {
   const auto& contact = answer.question.contact;
   Json json = {{"vehicles", Json::array()}, {"times", Json::array()}, {"frames", Json::array()}};
+  json["contact"] = contactNumbers(panel, canvas);
   for (const record::TimelineVehicle& vehicle : panel.course->timeline.vehicles())
     json["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
   for (const record::TimelineFrame& frame : panel.course->timeline.frames()) {
@@ -153,7 +179,7 @@ Markup speedChart(const std::vector<Panel>& panels, const Answer& answer) {
   chart.marks = {{answer.take_over, 0.0, "take-over"}};
   Markup legend;
   for (const Panel& panel : panels) legend += page::legendLine(panel.style, panel.title);
-  return page::chartSvg(chart) + page::pageLegend(legend);
+  return element("div", {{"class", "charts"}}, page::chartSvg(chart)) + page::pageLegend(legend);
 }
 
 /// How often the open answer holds, and the latest take-overs.
@@ -180,9 +206,11 @@ std::string whatIfPage(const session::SessionSetup& setup, const Answer& answer)
   const std::vector<Panel> panels = panelsOf(answer);
   const page::MapCanvas canvas(regionOf(panels, answer), kPictureSize);
   const session::ScenarioOptions& options = setup.options();
-  Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1"}},
-               {"scale", canvas.scale() * page::vehicleMagnification(canvas)},
-               {"courses", Json::array()}};
+  Json data = {
+      {"styles", {"ego", "bg", "cbv c0", "cbv c1"}},
+      {"start", answer.question.contact ? answer.question.contact->seconds : answer.take_over},
+      {"scale", canvas.scale() * page::vehicleMagnification(canvas)},
+      {"courses", Json::array()}};
   Markup pictures = "\n";
   for (std::size_t i = 0; i < panels.size(); ++i) {
     pictures += picture(panels[i], setup, canvas, i);

@@ -33,6 +33,9 @@
       svgElement("path", { class: "nose",
         d: `M${0.3 * l} ${-0.8 * w}L${0.8 * l} 0L${0.3 * l} ${0.8 * w}Z` }, box);
     }
+    if (course.contact !== null && course.times[shown] >= course.contact[0] - 1e-6)
+      svgElement("circle", { class: "contact", cx: course.contact[1], cy: course.contact[2], r: 11 },
+        layer);
   };
   const show = function (frame) {
     slider.value = Math.min(Math.max(frame, 0), last);
@@ -69,5 +72,6 @@
     event.preventDefault();
   });
   slider.max = last;
-  show(0);
+  const first = longest.findIndex((time) => time >= data.start - 1e-6);
+  show(first < 0 ? last : first);
 })();
