@@ -52,6 +52,7 @@ TEST_F(SessionMetricsTest, GivesReasonsForAnEmptySession) {
                            "cbv_standing_free_percent",
                            "cbv_wrong_way_percent",
                            "ego_contacts_braking_avoids_per_km",
+                           "ego_near_misses_per_km",
                            "ego_distance_m",
                            "ego_driving_score_under_attack",
                            "ttc_cbv_set_mean_s",

@@ -124,6 +124,8 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                           "struck_standing_per_km",
                                           "contacts_braking_avoids",
                                           "contacts_braking_avoids_per_km",
+                                          "near_misses",
+                                          "near_misses_per_km",
                                           "off_road_percent",
                                           "distance_m"}));
   EXPECT_EQ(keysOf(summary["cbv"]), Keys({"count",

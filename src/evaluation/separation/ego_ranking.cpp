@@ -20,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kNearMiss = 1.0;       // post-encroachment time [s]
 constexpr double kStandingSpeed = 0.1;  // [m/s]
 constexpr double kSlowSpeed = 1.0;      // [m/s]
 
@@ -77,18 +76,6 @@ double numberAt(const json& object, const char* key) {
   return value.is_number() ? value.get<double>() : 0.0;
 }
 
-std::size_t nearMisses(const json& summary) {
-  std::size_t count = 0;
-  for (const json& entry :
-       summary.value(json::json_pointer("/cbv/post_encroachments"), json::array())) {
-    const json seconds = entry.value("seconds", json());
-    if (!seconds.is_number()) continue;
-    const double time = std::abs(seconds.get<double>());
-    if (time > 0.0 && time < kNearMiss) ++count;
-  }
-  return count;
-}
-
 /// Time between ticks [s]: the session's length over its last tick.
 double stepOf(std::string_view trace, double seconds) {
   const std::size_t last = trace.size() < 2 ? 0 : trace.rfind('\n', trace.size() - 2) + 1;
@@ -110,7 +97,7 @@ EgoRun readRun(const fs::path& folder, const fs::path& base) {
   run.minutes = summary.at("simulated_seconds").get<double>() / 60.0;
   run.completion_percent = numberAt(ego, "route_completion_percent");
   run.driving_score = numberAt(ego, "driving_score");
-  run.near_misses = nearMisses(summary);
+  run.near_misses = static_cast<std::size_t>(numberAt(ego, "near_misses"));
   const std::string trace = core::readFile(folder / "trace.csv", "trace");
   const double step = stepOf(trace, 60.0 * run.minutes);
   run.standing_minutes = standingMinutes(trace, step);

@@ -31,7 +31,7 @@ struct EgoRun {
   double standing_minutes = 0.0;  ///< of these at less than 0.1 m/s
   double completion_percent = 0.0;
   double driving_score = 0.0;
-  std::size_t near_misses = 0;  ///< CBVs that it missed by a post-encroachment time below 1 s
+  std::size_t near_misses = 0;  ///< measure ego_near_misses
   /// A contact of the ego.
   struct Contact {
     double seconds = 0.0;
