@@ -6,6 +6,7 @@
 #include "e2e_cdiff/core/random.h"
 #include "map/import/network_import.h"
 #include "rendering/front_camera.h"
+#include "rendering/range_sensor.h"
 
 namespace cdiff::benchmark {
 namespace {
@@ -66,6 +67,20 @@ rendering::RigRenderer rendererOf(const char* preset, const map::RoadNetwork& ne
   return {rendering::rigOf(options, {}), network};
 }
 
+/// Processor time of a scan of true sensors (goal: 2 ms).
+void addScans(const map::RoadNetwork& network, const std::vector<traffic::TrafficSnapshot>& places,
+              Figures& figures) {
+  const auto add = [&](const std::string& name, const rendering::RangeSensorOptions& options) {
+    rendering::RangeSensor sensor(options, network);
+    const auto scan = [&](const traffic::TrafficSnapshot& place, const traffic::Vehicle& of) {
+      sensor.scan(place, of.id);
+    };
+    figures.push_back({"Town05_" + name + "_p50", median(sweepsOf(places, scan)), "ms", "<=2"});
+  };
+  add("laser_720", rendering::RangeSensorOptions::laser());
+  add("lidar_16x360", rendering::RangeSensorOptions::lidar());
+}
+
 }  // namespace
 
 void benchmarkCamera(Figures& figures) {
@@ -97,6 +112,7 @@ void benchmarkCamera(Figures& figures) {
     six.render(place, of, rendering::Labels::kClassesAndInstances);
   });
   figures.push_back({"Town05_bench2drive_six_over_camera", six_ms / one_ms, "times", "<=4"});
+  addScans(network, places, figures);
 }
 
 }  // namespace cdiff::benchmark

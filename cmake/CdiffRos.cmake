@@ -25,6 +25,11 @@ catkin_package(INCLUDE_DIRS include
                CATKIN_DEPENDS geometry_msgs message_runtime std_msgs)
 install(DIRECTORY include/e2e_cdiff/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 
+# Python beside the messages: `from e2e_cdiff.pedal_map import pedals_for`.
+configure_file(${PROJECT_SOURCE_DIR}/src/dynamics/pedal_map.py
+               ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_PYTHON_DESTINATION}/pedal_map.py COPYONLY)
+install(FILES ${PROJECT_SOURCE_DIR}/src/dynamics/pedal_map.py DESTINATION ${CATKIN_PACKAGE_PYTHON_DESTINATION})
+
 # The interface that node_graph, nodes, cli and their tests link to see ROS and our messages.
 add_library(e2e_cdiff_messages INTERFACE)
 target_include_directories(e2e_cdiff_messages SYSTEM INTERFACE

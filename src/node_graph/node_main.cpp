@@ -20,6 +20,7 @@
 #include "node_graph/nodes/planner_node.h"
 #include "node_graph/nodes/recorder_node.h"
 #include "node_graph/nodes/replay_node.h"
+#include "node_graph/nodes/scene_node.h"
 #include "node_graph/nodes/traffic_simulator_node.h"
 #include "plugins/plugin_loader.h"
 #include "ros/ros.h"
@@ -114,6 +115,8 @@ int runMetricsNode(int argc, char** argv) {
 int runRecorderNode(int argc, char** argv) {
   return runNode<RecorderNode>(argc, argv, kRecorderNode);
 }
+
+int runSceneNode(int argc, char** argv) { return runNode<SceneNode>(argc, argv, kSceneNode); }
 
 int runReplayNode(int argc, char** argv) {
   return runNode(argc, argv, kTrafficSimulatorNode,

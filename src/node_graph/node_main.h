@@ -26,6 +26,8 @@ int runMetricsNode(int argc, char** argv);
 int runRecorderNode(int argc, char** argv);
 /// Replays a recorded session under the traffic simulator's name, to which the other nodes listen.
 int runReplayNode(int argc, char** argv);
+/// Makes markers of what rosbag play publishes.
+int runSceneNode(int argc, char** argv);
 
 /// Whether the ROS master answers within two seconds.
 bool masterAnswers();

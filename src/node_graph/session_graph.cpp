@@ -80,6 +80,7 @@ SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest
   SessionGraph graph;
   graph.max_cbv = static_cast<int>(options.max_cbv);
   graph.external_ego = options.ego_planner == planning::kExternalPlanner;
+  graph.ego_command = options.ego.command;
   graph.ego_sees = planners::seesImages(options.ego_planner);
   graph.show_cameras = request.show_cameras;
   graph.paced = options.real_time_factor > 0.0;
@@ -107,6 +108,7 @@ SessionGraph graphOf(const msgs::SessionInfo& info) {
   graph.paced = options.real_time_factor > 0.0;
   graph.rigs = session::VehicleRigs(options);
   graph.external_ego = info.external_ego != 0;
+  graph.ego_command = options.ego.command;
   graph.ego_sees = info.ego_sees != 0;
   graph.show_cameras = info.show_cameras != 0;
   addCbvPlanner(options, graph);

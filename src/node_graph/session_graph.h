@@ -20,6 +20,7 @@ inline constexpr const char* kDiffusionPlannerNode = "diffusion_planner_node";  
 inline constexpr const char* kCameraNode = "camera_node";
 inline constexpr const char* kMetricsNode = "metrics_node";
 inline constexpr const char* kRecorderNode = "recorder_node";
+inline constexpr const char* kSceneNode = "scene_node";  ///< takes part in no session
 
 using traffic::kEgoSlot;
 
@@ -40,6 +41,7 @@ struct SessionGraph {
   std::vector<std::string> participants;  ///< nodes that the session counts on
   int max_cbv = 0;                        ///< slots
   bool external_ego = false;              ///< the user's own node drives the ego
+  std::string ego_command = "control";    ///< how it commands (ego.command)
   bool ego_sees = false;                  ///< the ego's planner needs images
   bool show_cameras = false;              ///< images of ego and CBVs even where no planner sees
   bool paced = false;                     ///< the wall clock rules: late answers are replaced
@@ -49,6 +51,8 @@ struct SessionGraph {
   session::VehicleRigs rigs = {};  ///< cameras of ego and slots
 
   bool has(const std::string& node) const;
+  /// Whether an external ego commands in this way.
+  bool commandedBy(const char* command) const { return external_ego && ego_command == command; }
   /// Whether the traffic simulator publishes which answers counted at each decision; observers take
   /// the controls from there.
   bool recordsDecisions() const { return paced || external_ego; }

@@ -25,7 +25,7 @@ const char* headlineOf(record::Outcome outcome) {
     case record::Outcome::kPassed:
       return "Passed";
     case record::Outcome::kStruck:
-      return "Struck: the ego met its rules, but was hit";
+      return "Struck: the ego met its rules, but not without contact";
     case record::Outcome::kFailed:
       return "Failed";
     case record::Outcome::kNotJudged:

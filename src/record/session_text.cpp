@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "record/logs/cbv_log.h"
+#include "record/verdict.h"
 #include "session/session_request.h"
 
 namespace cdiff::record {
@@ -87,7 +88,7 @@ std::string contact(const SessionResult& result) {
          (contacts.size() > 1
               ? ", the first of " + std::to_string(contacts.size()) + " contacts of the ego"
               : "") +
-         (first.ego_at_fault ? "; the ego was at fault." : "; the ego was not at fault.");
+         "; " + faultText(result.setup.options(), contacts) + ".";
 }
 
 }  // namespace

@@ -39,13 +39,22 @@ std::string countText(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-std::vector<std::string> contactTexts(const metrics::SessionMeasures& measures, bool at_fault) {
-  std::vector<std::string> texts;
-  for (const metrics::EgoContact& contact : measures.ego_contacts) {
-    if (contact.ego_at_fault == at_fault) texts.push_back(contactText(contact));
+/// The ego's contacts as texts, by its part in them.
+struct BlamedContacts {
+  std::vector<std::string> fault;
+  std::vector<std::string> excused;
+  std::vector<std::string> struck;
+
+  BlamedContacts(const metrics::SessionMeasures& measures, bool excuses) {
+    for (const metrics::EgoContact& contact : measures.ego_contacts) {
+      const Blame blame = blameOf(contact, excuses);
+      std::vector<std::string>& texts = blame == Blame::kFault     ? fault
+                                        : blame == Blame::kExcused ? excused
+                                                                   : struck;
+      texts.push_back(contactText(contact));
+    }
   }
-  return texts;
-}
+};
 
 std::string atFaultText(const std::vector<std::string>& contacts) {
   return "the ego was at fault in " + countText(contacts.size(), "contact") + ": with " +
@@ -55,6 +64,19 @@ std::string atFaultText(const std::vector<std::string>& contacts) {
 std::string struckText(const std::vector<std::string>& contacts) {
   return "the ego was struck without fault in " + countText(contacts.size(), "contact") + ", by " +
          core::joinText(contacts, "; by ");
+}
+
+std::string excusedText(const std::vector<std::string>& contacts) {
+  return "no braking of the ego would have avoided " + countText(contacts.size(), "contact") +
+         ", which excuses it: with " + core::joinText(contacts, "; with ");
+}
+
+/// Of contacts that are not, or not wholly, the ego's fault.
+std::vector<std::string> faultlessTexts(const BlamedContacts& contacts) {
+  std::vector<std::string> texts;
+  if (!contacts.struck.empty()) texts.push_back(struckText(contacts.struck));
+  if (!contacts.excused.empty()) texts.push_back(excusedText(contacts.excused));
+  return texts;
 }
 
 /// Adds a check for each rule that the scenario sets.
@@ -104,7 +126,8 @@ class VerdictRules {
   }
 
   void addContacts() {
-    const std::vector<std::string> own = contactTexts(measures_, true);
+    const BlamedContacts contacts(measures_, rules_.excusesUnavoidable(mode_));
+    const std::vector<std::string>& own = contacts.fault;
     const double most = rules_.maximum_contacts_at_fault;
     if (most < kNoLimit) {
       checks_.push_back(
@@ -113,19 +136,19 @@ class VerdictRules {
                      core::formatNumber(most) + " allowed" +
                      (own.empty() ? "" : ": with " + core::joinText(own, "; with "))));
     }
-    addContactsWithoutFault(contactTexts(measures_, false));
+    addContactsWithoutFault(faultlessTexts(contacts));
   }
 
-  void addContactsWithoutFault(const std::vector<std::string>& others) {
+  void addContactsWithoutFault(const std::vector<std::string>& texts) {
     std::string meaning = rules_.contact_without_fault;
     if (meaning == "allowed") return;
     const bool by_mode = meaning == "by_mode";
     if (by_mode) meaning = mode_ == "safety_critical" ? "struck" : "failed";
     Check check{"contact_without_fault", CheckOutcome::kPassed, "no vehicle struck the ego"};
-    if (!others.empty()) {
+    if (!texts.empty()) {
       check.outcome = meaning == "struck" ? CheckOutcome::kStruck : CheckOutcome::kFailed;
-      check.text =
-          struckText(others) + (by_mode ? "; in mode " + mode_ + " that counts as " + meaning : "");
+      check.text = core::joinText(texts, "; ") +
+                   (by_mode ? "; in mode " + mode_ + " that counts as " + meaning : "");
     }
     checks_.push_back(check);
   }
@@ -207,14 +230,14 @@ Outcome outcomeFrom(SessionStatus status, const std::vector<Check>& checks) {
 }
 
 /// Why a session is not judged, and what is worth knowing of it all the same.
-std::vector<std::string> reasonsNotToJudge(bool judge, const metrics::SessionMeasures& measures) {
+std::vector<std::string> reasonsNotToJudge(const session::ScenarioOptions& options,
+                                           const metrics::SessionMeasures& measures) {
   std::vector<std::string> reasons = {
-      judge ? "the scenario has no rules (group 'verdict')"
-            : "the scenario is not to be judged (verdict.judge is false)"};
-  const std::vector<std::string> own = contactTexts(measures, true);
-  const std::vector<std::string> others = contactTexts(measures, false);
-  if (!own.empty()) reasons.push_back(atFaultText(own));
-  if (!others.empty()) reasons.push_back(struckText(others));
+      options.verdict.judge ? "the scenario has no rules (group 'verdict')"
+                            : "the scenario is not to be judged (verdict.judge is false)"};
+  const BlamedContacts contacts(measures, options.verdict.excusesUnavoidable(options.mode));
+  if (!contacts.fault.empty()) reasons.push_back(atFaultText(contacts.fault));
+  for (const std::string& text : faultlessTexts(contacts)) reasons.push_back(text);
   return reasons;
 }
 
@@ -249,10 +272,34 @@ Verdict judge(const session::ScenarioOptions& options, SessionStatus status,
   }
   verdict.outcome = outcomeFrom(status, verdict.checks);
   if (verdict.outcome == Outcome::kNotJudged)
-    verdict.reasons = reasonsNotToJudge(options.verdict.judge, measures);
+    verdict.reasons = reasonsNotToJudge(options, measures);
   else
     addReasons(verdict);
   return verdict;
+}
+
+Blame blameOf(const metrics::EgoContact& contact, bool excuses_unavoidable) {
+  if (!contact.ego_at_fault) return Blame::kNone;
+  return excuses_unavoidable && !contact.avoidable ? Blame::kExcused : Blame::kFault;
+}
+
+std::string faultText(const session::ScenarioOptions& options,
+                      const std::vector<metrics::EgoContact>& contacts) {
+  if (contacts.empty()) return "";
+  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
+  const auto count = [&](Blame blame) {
+    return std::count_if(contacts.begin(), contacts.end(),
+                         [&](const auto& contact) { return blameOf(contact, excuses) == blame; });
+  };
+  const auto fault = count(Blame::kFault);
+  const auto excused = count(Blame::kExcused);
+  if (contacts.size() == 1 && excused > 0)
+    return "the ego is excused, as no braking would have avoided it";
+  if (contacts.size() == 1) return fault > 0 ? "the ego was at fault" : "the ego was not at fault";
+  return "the ego was at fault in " + (fault == 0 ? "none" : std::to_string(fault)) + " of them" +
+         (excused == 0 ? ""
+                       : ", and is excused in " + std::to_string(excused) +
+                             " that no braking would have avoided");
 }
 
 std::string contactText(const metrics::EgoContact& contact) {

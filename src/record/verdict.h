@@ -40,6 +40,19 @@ bool endedByItself(traffic::SessionStatus status);
 Verdict judge(const session::ScenarioOptions& options, traffic::SessionStatus status,
               const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults);
 
+/// The ego's part in a contact, as the verdict counts it.
+enum class Blame {
+  kNone,     ///< the other struck the ego
+  kExcused,  ///< the ego's fault, but no braking would have avoided it, and the rules excuse that
+  kFault     ///< the ego's fault
+};
+Blame blameOf(const metrics::EgoContact& contact, bool excuses_unavoidable);
+
+/// Whose fault the ego's contacts were, by the same count as the verdict: "the ego was not at
+/// fault", "the ego was at fault in 1 of them". Empty without contacts.
+std::string faultText(const session::ScenarioOptions& options,
+                      const std::vector<metrics::EgoContact>& contacts);
+
 /// "cbv_1 at 5.85 s (the other's front struck the ego's rear ...)".
 std::string contactText(const metrics::EgoContact& contact);
 

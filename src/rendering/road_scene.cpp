@@ -84,6 +84,8 @@ void addLane(const map::Lane& lane, std::vector<Surface>& surfaces) {
   }
 }
 
+}  // namespace
+
 std::vector<Surface> surfacesOf(const map::RoadNetwork& network) {
   std::vector<Surface> surfaces;
   for (const map::Junction& junction : network.junctions()) {
@@ -99,8 +101,6 @@ std::vector<Surface> surfacesOf(const map::RoadNetwork& network) {
   surfaces.insert(surfaces.end(), sides.begin(), sides.end());
   return surfaces;
 }
-
-}  // namespace
 
 Bound boundOf(const Eigen::Vector3d* points, int count) {
   Eigen::Vector3d low = points[0];

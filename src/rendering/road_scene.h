@@ -80,6 +80,9 @@ struct Marking {
   Color color = kWhitePaint;
 };
 
+/// Asphalt of lanes and junctions, pavements, and the sides of roads above their surroundings.
+std::vector<Surface> surfacesOf(const map::RoadNetwork& network);
+
 /// The static ground of a network: asphalt of lanes and junctions, pavements, markings (map frame
 /// [m]). Computed once from the network; FrontCamera draws what its view may see.
 class RoadScene {

@@ -90,12 +90,22 @@ VerdictOptions VerdictOptions::standard() {
   return rules;
 }
 
+bool VerdictOptions::excusesUnavoidable(const std::string& mode) const {
+  if (excuse_unavoidable == "by_mode") return mode == "safety_critical";
+  return excuse_unavoidable == "true";
+}
+
 void VerdictOptions::describe(core::OptionsVisitor& visitor) {
   visitor.flag({"judge", "", "Whether the rules below are applied."}, judge);
   visitor.number({"minimum_route_completion", "%", "Least route completion of the ego."},
                  minimum_route_completion, 0.0, 100.0);
   visitor.number({"maximum_contacts_at_fault", "", "Most contacts that are the ego's fault."},
                  maximum_contacts_at_fault, 0.0, kInfinite);
+  visitor.text(
+      {"excuse_unavoidable", "",
+       "Whether a contact that no braking would have avoided is no fault; by_mode: true in "
+       "safety_critical, false in naturalistic."},
+      excuse_unavoidable, {"by_mode", "true", "false"});
   visitor.text({"contact_without_fault", "",
                 "What a contact that is not the ego's fault makes of the session; by_mode: failed "
                 "in naturalistic, struck in safety_critical."},
@@ -115,6 +125,15 @@ void VerdictOptions::describe(core::OptionsVisitor& visitor) {
                  maximum_cbv_off_road_percent, 0.0, 100.0);
   visitor.list({"statuses", "", "Final statuses that pass; empty: all but error and interrupted."},
                statuses);
+}
+
+void EgoOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text({"command", "", "How an external ego commands (docs/test_your_ego.md)."}, command,
+               {"control", "ackermann", "trajectory", "cmd_vel"});
+  visitor.number({"object_range", "m", "Distance up to which the ego is told of vehicles."},
+                 object_range, 1.0, 1000.0);
+  visitor.group({"laser", "", "2D laser scanner of the ego."}, laser);
+  visitor.group({"lidar", "", "Sparse lidar of the ego."}, lidar);
 }
 
 void ReportOptions::describe(core::OptionsVisitor& visitor) {
@@ -177,6 +196,7 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
   visitor.group({"ego_guidance", "", "Guidance of the ego; defaults are its profile's."},
                 ego_guidance);
   visitor.group({"camera", "", "Front camera of vehicles whose planner sees."}, camera);
+  visitor.group({"ego", "", "Topics of an external ego."}, ego);
   visitor.group({"ego_rig", "", "Cameras of the ego, where its planner sees or it is shown."},
                 ego_rig);
   visitor.group({"cbv_rig", "", "Cameras of the CBVs, likewise."}, cbv_rig);
@@ -229,6 +249,8 @@ void ScenarioOptions::validate() const {
 }
 
 void ScenarioOptions::validateCameras() const {
+  ego.laser.validate("ego.laser.");
+  ego.lidar.validate("ego.lidar.");
   ego_rig.validate("ego_rig.");
   cbv_rig.validate("cbv_rig.");
   planners::requireRig("ego_planner", ego_planner, {"ego_rig", ego_rig, camera});

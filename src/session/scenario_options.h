@@ -13,6 +13,7 @@
 #include "e2e_cdiff/rendering/camera_rig.h"
 #include "map/route_source.h"
 #include "planners/registry.h"
+#include "rendering/range_sensor.h"
 #include "session/protocol.h"
 #include "session/target_speed.h"
 #include "simulation/demand_generator.h"
@@ -25,6 +26,9 @@ struct VerdictOptions {
   bool judge = true;                       ///< false: as if there were no rules
   double minimum_route_completion = 0.0;   ///< least route completion of the ego [%]
   double maximum_contacts_at_fault = 1e9;  ///< contacts that are the ego's fault
+  std::string excuse_unavoidable =
+      "by_mode";  ///< true | false | by_mode (true in safety_critical): whether a contact that no
+                  ///< braking would have avoided counts as one without fault
   std::string contact_without_fault =
       "allowed";  ///< allowed | struck | failed | by_mode: failed where CBVs drive naturalistically
                   ///< and struck where they attack
@@ -38,9 +42,21 @@ struct VerdictOptions {
       statuses;  ///< allowed final statuses; empty: all but error and interrupted
 
   void describe(core::OptionsVisitor& visitor);
+  /// What excuse_unavoidable is in a mode.
+  bool excusesUnavoidable(const std::string& mode) const;
   /// Rules for routes that bring none of their own, and those of the shipped scenarios: the route
   /// driven to 90 %, neither blocked nor deviated, no contact at fault, others by mode.
   static VerdictOptions standard();
+};
+
+/// What passes between the session and an external ego.
+struct EgoOptions {
+  std::string command = "control";  ///< control | ackermann | trajectory | cmd_vel
+  double object_range = 100.0;      ///< of /ego/objects, from center to center [m]
+  rendering::RangeSensorOptions laser = rendering::RangeSensorOptions::laser();
+  rendering::RangeSensorOptions lidar = rendering::RangeSensorOptions::lidar();
+
+  void describe(core::OptionsVisitor& visitor);
 };
 
 /// What the report holds.
@@ -75,6 +91,7 @@ struct ScenarioOptions {
   std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
   guidance::GuidanceOptions ego_guidance;  ///< the ego's, where its planner can be guided
   rendering::CameraOptions camera;         ///< the front camera, and what all cameras share
+  EgoOptions ego;                          ///< topics of an external ego
   rendering::RigOptions ego_rig;           ///< cameras of the ego
   rendering::RigOptions cbv_rig;           ///< cameras of the CBVs
   dynamics::BicycleModelOptions vehicle;

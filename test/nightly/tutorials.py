@@ -35,6 +35,7 @@ LEFT_OUT = [
     (r"results/(towns|dev10|cbvs|egos|smooth|camera_egos)", "runs a matrix of 60 runs and more"),
     (r"--open-sealed", "opens a sealed suite"),
     (r"--bags monday\.bag", "needs a bag of the reader's own"),
+    (r"scene\.launch", "shows rviz until it is closed"),
     (r"scripts/benchmark", "measures, for which the machine must be quiet"),
 ]
 SMALLER = [

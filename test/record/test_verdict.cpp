@@ -128,6 +128,66 @@ TEST(Verdict, WhatAContactWithoutFaultMeansIsTheScenarios) {
   EXPECT_EQ(outcome("by_mode"), Outcome::kFailed);  // naturalistic
 }
 
+metrics::EgoContact contactOf(const std::string& partner, bool at_fault, bool avoidable) {
+  metrics::EgoContact contact;
+  contact.partner = partner;
+  contact.ego_at_fault = at_fault;
+  contact.avoidable = avoidable;
+  return contact;
+}
+
+TEST(Verdict, AContactThatNoBrakingAvoidsIsExcusedWhereTheRulesSaySo) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.ego_contacts = {contactOf("cbv_1", true, false)};
+  session::ScenarioOptions options;
+  options.verdict = session::VerdictOptions::standard();
+  options.verdict.minimum_route_completion = 0.0;
+  const auto outcome = [&](const char* excuse, const char* mode) {
+    options.verdict.excuse_unavoidable = excuse;
+    options.mode = mode;
+    return judge(options, SessionStatus::kCompleted, measures, {}).outcome;
+  };
+  EXPECT_EQ(outcome("by_mode", "safety_critical"), Outcome::kStruck);
+  EXPECT_EQ(outcome("by_mode", "naturalistic"), Outcome::kFailed);
+  EXPECT_EQ(outcome("false", "safety_critical"), Outcome::kFailed);
+  EXPECT_EQ(outcome("true", "naturalistic"), Outcome::kFailed) << "as any contact fails there";
+  EXPECT_EQ(judge(options, SessionStatus::kCompleted, measures, {}).decided_by,
+            std::vector<std::string>{"contact_without_fault"});
+  measures.ego_contacts = {contactOf("cbv_1", true, true)};
+  EXPECT_EQ(outcome("by_mode", "safety_critical"), Outcome::kFailed);
+}
+
+// Whatever the ego's contacts were, the verdict's reasons and the story count them alike.
+TEST(Verdict, TheStoryNeverContradictsTheReasons) {
+  session::ScenarioOptions options;
+  options.verdict = session::VerdictOptions::standard();
+  options.verdict.minimum_route_completion = 0.0;
+  for (const char* mode : {"naturalistic", "safety_critical"}) {
+    options.mode = mode;
+    for (int kinds = 0; kinds < 64; ++kinds) {
+      metrics::SessionMeasures measures = someMeasures();
+      measures.ego_contacts.clear();
+      for (int i = 0; i < 1 + kinds / 16; ++i) {
+        const int kind = kinds >> i;
+        measures.ego_contacts.push_back(
+            contactOf("cbv_" + std::to_string(i), kind % 2 == 1, kind / 2 % 2 == 1));
+      }
+      const Verdict verdict = judge(options, SessionStatus::kCompleted, measures, {});
+      const std::string story = faultText(options, measures.ego_contacts);
+      const bool fault =
+          verdict.outcome == Outcome::kFailed && verdict.decided_by.front() == "contacts_at_fault";
+      const bool told =
+          story == "the ego was at fault" || (story.find("at fault in ") != std::string::npos &&
+                                              story.find("at fault in none") == std::string::npos);
+      EXPECT_EQ(told, fault) << story << kinds;
+      bool excused = false;
+      for (const std::string& reason : verdict.reasons)
+        excused = excused || reason.find("which excuses it") != std::string::npos;
+      EXPECT_EQ(story.find("excused") != std::string::npos, excused) << story << kinds;
+    }
+  }
+}
+
 TEST(Verdict, AnAbsentInfractionIsSkippedWithItsReason) {
   metrics::SessionMeasures measures = someMeasures();
   measures.set(known::kRedLights, {std::nullopt, 0, "", "no road network was given"});
@@ -234,7 +294,7 @@ void EveryReader::expectJunit(const test::VerdictCase& wanted) const {
 
 void EveryReader::expectContacts(test::Touch touch) const {
   const auto ego = nlohmann::json::parse(textOf("summary.json"))["ego"];
-  const bool at_fault = touch == test::Touch::kEgoAtFault;
+  const bool at_fault = touch == test::Touch::kEgoAtFault || touch == test::Touch::kUnavoidable;
   EXPECT_EQ(ego["contacts_at_fault"], at_fault ? 1 : 0);
   if (touch == test::Touch::kNone) {
     EXPECT_TRUE(ego["contacts"].empty());

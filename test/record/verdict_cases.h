@@ -11,7 +11,7 @@
 
 namespace cdiff::test {
 
-enum class Touch { kNone, kEgoAtFault, kEgoStruck };
+enum class Touch { kNone, kEgoAtFault, kUnavoidable, kEgoStruck };
 
 struct VerdictCase {
   std::string name;
@@ -42,6 +42,11 @@ inline const std::vector<VerdictCase>& verdictCases() {
        Outcome::kFailed, 1, "the ego was at fault in 1 contact; at most 0 allowed: with bg_9"},
       {"at_fault_attacked", kAttack, SessionStatus::kCompleted, 440, Touch::kEgoAtFault, true, true,
        Outcome::kFailed, 1, "the ego's front struck the other's rear"},
+      {"unavoidable", kAttack, SessionStatus::kCompleted, 440, Touch::kUnavoidable, true, true,
+       Outcome::kStruck, 0, "no braking of the ego would have avoided 1 contact, which excuses it"},
+      {"unavoidable_in_peace", kFree, SessionStatus::kCompleted, 440, Touch::kUnavoidable, true,
+       true, Outcome::kFailed, 1,
+       "the ego was at fault in 1 contact; at most 0 allowed: with bg_9"},
       {"struck", kFree, SessionStatus::kCompleted, 440, Touch::kEgoStruck, true, true,
        Outcome::kFailed, 1, "in mode naturalistic that counts as failed"},
       {"struck_attacked", kAttack, SessionStatus::kCompleted, 440, Touch::kEgoStruck, true, true,
@@ -72,11 +77,13 @@ inline session::ScenarioOptions optionsOf(const VerdictCase& wanted) {
   return options;
 }
 
-/// bg_9 stands 4.4 m ahead of the ego at 5 s, or comes from 4.4 m behind it at 12 m/s: boxes of 4.5
-/// m that were 0.3 m or 0.1 m apart at the tick before.
+/// bg_9 stands 4.4 m ahead of the ego at 5 s, since 2 s or (unavoidable) since the tick before, or
+/// comes from 4.4 m behind it at 12 m/s: boxes of 4.5 m that were 0.3 m or 0.1 m apart at the tick
+/// before.
 inline void addTouch(traffic::TrafficSnapshot& snapshot, Touch touch) {
   constexpr std::uint64_t kTick = 100;
-  if (touch == Touch::kNone || snapshot.tick + 1 < kTick || snapshot.tick > kTick) return;
+  const std::uint64_t first = touch == Touch::kEgoAtFault ? 40 : kTick - 1;
+  if (touch == Touch::kNone || snapshot.tick < first || snapshot.tick > kTick) return;
   const bool strikes = touch == Touch::kEgoStruck;
   const double back = 0.05 * static_cast<double>(kTick - snapshot.tick);  // [s]
   const double speed = strikes ? 12.0 : 0.0;

@@ -89,12 +89,13 @@ void BagFile::write(const TickMessages& tick) {
 void BagFile::writeTick(const TickMessages& tick) {
   const auto snapshot = tick.get<msgs::TrafficSnapshot>(ChannelId::kTraffic);
   const ros::Time stamp = bagStamp(snapshot->header.stamp);
-  const bool derives = content_ == Content::kWhole && snapshot->decision_tick;
   for (const Channel& row : channels()) {
     if (row.recorded != Recorded::kTick && row.recorded != Recorded::kDecision) continue;
     for (const Topic& topic : topicsOf(row, max_cbv_, reading_.rigs)) {
       AnyMessage message = tick.find(topic);
-      if (!message && row.derive != nullptr && derives) message = row.derive(tick, reading_, topic);
+      const bool derives = row.derive != nullptr && content_ == Content::kWhole &&
+                           (snapshot->decision_tick || row.recorded == Recorded::kTick);
+      if (!message && derives) message = row.derive(tick, reading_, topic);
       if (message) put(topic, stamp, message);
     }
   }

@@ -23,8 +23,10 @@ std::vector<Missing> LockstepPacer::missingAnswers() const {
   std::vector<Missing> missing;
   for (const Topic& topic : answers_.missing(*published_)) {
     const std::string node = answererOf(topic, session_.graph);
-    missing.push_back(
-        {node, topic.name() + " for tick " + std::to_string(published_->tick) + " (" + node + ")"});
+    const bool command = topic.id == ChannelId::kEgoControl;
+    missing.push_back({node, (command ? egoCommandOf(session_.graph) : topic).name() +
+                                 " for tick " + std::to_string(published_->tick) + " (" + node +
+                                 ")"});
   }
   return missing;
 }

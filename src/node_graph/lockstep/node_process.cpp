@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <pugixml.hpp>
@@ -162,6 +163,17 @@ std::optional<pid_t> launchedProcess(const std::string& node) {
 bool killLaunchedProcess(const std::string& node) {
   const std::optional<pid_t> id = launchedProcess(node);
   return id && ::kill(*id, SIGKILL) == 0;
+}
+
+void endLaunch(StopSignal& stop) {
+  constexpr double kPatience = 5.0;  // [s]
+  const std::vector<std::string> command = textsOf(::getppid(), "cmdline");
+  const bool launched = std::any_of(command.begin(), command.end(), [](const std::string& text) {
+    return fs::path(text).filename() == "roslaunch";
+  });
+  if (!launched || stop.raised() || ::kill(::getppid(), SIGINT) != 0) return;
+  const auto begin = std::chrono::steady_clock::now();
+  while (!stop.raised() && secondsSince(begin) < kPatience) spin(kSpinPeriod);
 }
 
 std::optional<double> launchTime() {

@@ -56,6 +56,11 @@ std::optional<pid_t> launchedProcess(const std::string& node);
 /// was one.
 bool killLaunchedProcess(const std::string& node);
 
+/// Asks the roslaunch that started this process to end, as Ctrl-C does, and waits until it passes
+/// the signal on (5 s at most): it calls the end of a required node red, however well it ended.
+/// Does nothing where something else started this process.
+void endLaunch(StopSignal& stop);
+
 /// [s] since the epoch at which the parent of this process started.
 std::optional<double> launchTime();
 

@@ -81,7 +81,7 @@ std::vector<Missing> WallClockPacer::silentNodes(double seconds) const {
     missing.push_back({node, "a sign of life of " + node});
   if (session_.graph.external_ego && secondsSince(std::max(ego_heard_at_, begin_)) > seconds)
     missing.push_back({answererOf(ChannelId::kEgoControl, session_.graph),
-                       "a command on " + Topic(ChannelId::kEgoControl).name()});
+                       "a command on " + egoCommandOf(session_.graph).name()});
   return missing;
 }
 

@@ -2,12 +2,17 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/messages/channels.h"
 
+#include "e2e_cdiff/AckermannCommand.h"
 #include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/Heartbeat.h"
 #include "e2e_cdiff/TickAck.h"
+#include "e2e_cdiff/TrackedObjects.h"
+#include "geometry_msgs/Twist.h"
 #include "nav_msgs/Path.h"
 #include "node_graph/messages/channel_conversions.h"
 #include "rosgraph_msgs/Clock.h"
+#include "sensor_msgs/LaserScan.h"
+#include "sensor_msgs/PointCloud2.h"
 #include "visualization_msgs/MarkerArray.h"
 
 namespace cdiff::node_graph {
@@ -36,6 +41,15 @@ constexpr Condition kEgoSees = {"where the planner sees",
                                 [](const Graph& graph) { return graph.egoPlansFromImages(); }};
 constexpr Condition kCbvsSee = {"where the planner sees",
                                 [](const Graph& graph) { return graph.cbvsPlanFromImages(); }};
+
+constexpr Condition kByAckermann = {"where `ego.command` is `ackermann`", [](const Graph& graph) {
+                                      return graph.commandedBy("ackermann");
+                                    }};
+constexpr Condition kByTrajectory = {"where `ego.command` is `trajectory`", [](const Graph& graph) {
+                                       return graph.commandedBy("trajectory");
+                                     }};
+constexpr Condition kByVelocity = {"where `ego.command` is `cmd_vel`",
+                                   [](const Graph& graph) { return graph.commandedBy("cmd_vel"); }};
 
 /// Builds a row; what is not set stays as for a topic that no tick waits for and no bag holds.
 class Row {
@@ -106,10 +120,15 @@ class Row {
     row_.take = take;
     return *this;
   }
+  /// Of an external ego, one way to command of several.
+  Row& command(const Condition& chosen) {
+    row_.use = Use::kCommand;
+    return vehicle().where(chosen).heardBy(Party::kSimulator, chosen);
+  }
   /// Recorded, made of other messages.
-  Row& derived(DeriveMessage derive) {
+  Row& derived(DeriveMessage derive, Recorded when = Recorded::kDecision) {
     row_.derive = derive;
-    return recorded(Recorded::kDecision);
+    return recorded(when);
   }
   operator Channel() const { return row_; }  // NOLINT: a row is a channel
 
@@ -167,15 +186,28 @@ Rows tickRows() {
           .converted(&makeSelection)};
 }
 
+Rows egoRows() {
+  return {
+      Row::of<msgs::ControlAction>(ChannelId::kEgoControl, "ego/control", Party::kEgoPlanner,
+                                   "Throttle, steer and brake of the ego.")
+          .vehicle()
+          .heardBy(Party::kSimulator)
+          .observed(kNoRecords)
+          .answer(Need::kVehicle)
+          .converted(&makeControl, &takeControl),
+      Row::of<msgs::AckermannCommand>(ChannelId::kEgoAckermann, "ego/ackermann", Party::kEgoPlanner,
+                                      "Steering angle with speed or acceleration.")
+          .command(kByAckermann),
+      Row::of<nav_msgs::Path>(ChannelId::kEgoTrajectory, "ego/trajectory", Party::kEgoPlanner,
+                              "Poses in `map`, each with the time at which the ego is there.")
+          .command(kByTrajectory),
+      Row::of<geometry_msgs::Twist>(ChannelId::kEgoVelocity, "ego/cmd_vel", Party::kEgoPlanner,
+                                    "Speed `linear.x` and yaw rate `angular.z`.")
+          .command(kByVelocity)};
+}
+
 Rows plannerRows() {
-  return {Row::of<msgs::ControlAction>(ChannelId::kEgoControl, "ego/control", Party::kEgoPlanner,
-                                       "Throttle, steer and brake of the ego.")
-              .vehicle()
-              .heardBy(Party::kSimulator)
-              .observed(kNoRecords)
-              .answer(Need::kVehicle)
-              .converted(&makeControl, &takeControl),
-          Row::of<msgs::ControlAction>(ChannelId::kCbvControl, "cbv_K/control", Party::kCbvPlanner,
+  return {Row::of<msgs::ControlAction>(ChannelId::kCbvControl, "cbv_K/control", Party::kCbvPlanner,
                                        "Throttle, steer and brake of the CBV of a slot.")
               .vehicle()
               .heardBy(Party::kSimulator)
@@ -229,20 +261,38 @@ Rows cameraRows() {
           cameraInfoRow(ChannelId::kCbvCameraInfo, "cbv_K/camera/camera_info", kCbvsShown)};
 }
 
+Rows sensorRows() {
+  return {Row::of<nav_msgs::Odometry>(ChannelId::kEgoOdometry, "ego/odometry", Party::kSimulator,
+                                      "Pose and speed of the ego, with covariance.")
+              .vehicle()
+              .derived(&deriveOdometry, Recorded::kTick),
+          Row::of<msgs::TrackedObjects>(ChannelId::kEgoObjects, "ego/objects", Party::kSimulator,
+                                        "True vehicles around the ego, at every tick.")
+              .vehicle(),
+          Row::of<MarkerArray>(ChannelId::kEgoObjectMarkers, "ego/objects/markers",
+                               Party::kSimulator, "The same as boxes.")
+              .vehicle(),
+          Row::of<sensor_msgs::LaserScan>(ChannelId::kEgoScan, "ego/scan", Party::kSimulator,
+                                          "True 2D laser scan, at decisions.")
+              .vehicle(),
+          Row::of<sensor_msgs::PointCloud2>(ChannelId::kEgoPoints, "ego/points", Party::kSimulator,
+                                            "True sparse lidar cloud, at decisions.")
+              .vehicle()};
+}
+
 Rows otherRows() {
+  return {Row::of<msgs::MetricReport>(
+              ChannelId::kMetrics, "metrics", Party::kMetrics,
+              "Measures of a decision; those of the whole session once a second and at its end.")
+              .heardBy(Party::kRecorder, kMeasured)
+              .recorded(Recorded::kDecision, Use::kReport),
+          Row::of<tf2_msgs::TFMessage>(ChannelId::kTransforms, "/tf", Party::kSimulator,
+                                       "`map` to `<vehicle>/base_link` of ego and CBVs.")
+              .derived(&deriveTransforms)};
+}
+
+Rows displayRows() {
   return {
-      Row::of<msgs::MetricReport>(
-          ChannelId::kMetrics, "metrics", Party::kMetrics,
-          "Measures of a decision; those of the whole session once a second and at its end.")
-          .heardBy(Party::kRecorder, kMeasured)
-          .recorded(Recorded::kDecision, Use::kReport),
-      Row::of<tf2_msgs::TFMessage>(ChannelId::kTransforms, "/tf", Party::kSimulator,
-                                   "`map` to `<vehicle>/base_link` of ego and CBVs.")
-          .derived(&deriveTransforms),
-      Row::of<nav_msgs::Odometry>(ChannelId::kEgoOdometry, "ego/odometry", Party::kSimulator,
-                                  "Pose and speed of the ego, for tools.")
-          .vehicle()
-          .derived(&deriveOdometry),
       Row::of<msgs::TickAck>(ChannelId::kTickAck, "tick_ack", Party::kParticipants,
                              "How a node stands with a tick.")
           .heardBy(Party::kSimulator),
@@ -263,7 +313,8 @@ Rows otherRows() {
 const std::vector<Channel>& channels() {
   static const std::vector<Channel> table = [] {
     std::vector<Channel> all;
-    for (const Rows& part : {setUpRows(), tickRows(), plannerRows(), cameraRows(), otherRows()}) {
+    for (const Rows& part : {setUpRows(), tickRows(), egoRows(), plannerRows(), cameraRows(),
+                             otherRows(), sensorRows(), displayRows()}) {
       for (const Channel& row : part) all.push_back(row);
     }
     return all;

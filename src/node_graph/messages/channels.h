@@ -137,6 +137,9 @@ enum class ChannelId {
   kDecisionRecord,
   kSelection,
   kEgoControl,
+  kEgoAckermann,
+  kEgoTrajectory,
+  kEgoVelocity,
   kCbvControl,
   kCbvRollout,
   kGuidance,
@@ -147,6 +150,10 @@ enum class ChannelId {
   kMetrics,
   kTransforms,
   kEgoOdometry,
+  kEgoObjects,
+  kEgoObjectMarkers,
+  kEgoScan,
+  kEgoPoints,
   kTickAck,
   kMarkers,
   kMapMarkers,
@@ -163,11 +170,12 @@ enum class Scope {
 
 /// What the messages of a channel are for.
 enum class Use {
-  kSetUp,   ///< describes the session; a bag starts with it
-  kTick,    ///< the snapshot that makes a tick
-  kAnswer,  ///< belongs to a tick; observers collect it, a replay reads it back
-  kReport,  ///< belongs to a tick; the recorder collects it, nothing is computed from it
-  kOther    ///< for tools and people, or of the nodes among themselves
+  kSetUp,    ///< describes the session; a bag starts with it
+  kTick,     ///< the snapshot that makes a tick
+  kAnswer,   ///< belongs to a tick; observers collect it, a replay reads it back
+  kReport,   ///< belongs to a tick; the recorder collects it, nothing is computed from it
+  kCommand,  ///< of an external ego; the simulator turns it into the ego's control
+  kOther     ///< for tools and people, or of the nodes among themselves
 };
 
 /// What of a channel a decision needs before it is complete for a node that listens to it.

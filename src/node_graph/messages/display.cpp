@@ -79,6 +79,10 @@ nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time) {
   message.pose.pose.orientation = toQuaternion(vehicle.state.heading);
   message.twist.twist.linear.x = vehicle.state.speed;
   message.twist.twist.angular.z = vehicle.yaw_rate;
+  constexpr double kVariance = 1e-6;  // of 1 mm, 1 mrad, 1 mm/s, 1 mrad/s
+  constexpr std::size_t kNextOnDiagonal = 7;
+  for (std::size_t i = 0; i < message.pose.covariance.size(); i += kNextOnDiagonal)
+    message.pose.covariance[i] = message.twist.covariance[i] = kVariance;
   return message;
 }
 
@@ -131,13 +135,13 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
   return message;
 }
 
-Display::Display(ros::NodeHandle& node)
-    : odometry_(node.advertise<nav_msgs::Odometry>(Topic(ChannelId::kEgoOdometry).name(), 100)) {}
+void Display::showSensors(const session::SessionSetup& setup) {
+  sensors_.emplace(node_, setup);
+  mounts_.sendTransform(laserMount(traffic::kEgoId, setup.options().ego.laser.height, 0.0));
+}
 
 void Display::publish(const traffic::TrafficSnapshot& snapshot) {
-  const traffic::Vehicle* ego = snapshot.ego();
-  if (ego != nullptr && odometry_.getNumSubscribers() > 0)
-    odometry_.publish(toOdometryMsg(*ego, snapshot.time));
+  if (sensors_) sensors_->publish(snapshot);
   if (rigs_) mountCameras(snapshot);
   transforms_.sendTransform(vehicleTransforms(snapshot));
 }

@@ -14,6 +14,7 @@
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "metrics/session_metrics.h"
 #include "nav_msgs/Odometry.h"
+#include "node_graph/messages/ego_sensors.h"
 #include "ros/ros.h"
 #include "session/session_setup.h"
 #include "tf2_msgs/TFMessage.h"
@@ -22,7 +23,8 @@
 
 namespace cdiff::node_graph {
 
-/// Pose in `map`, speed in the body frame.
+/// Pose in `map`, speed in the body frame; the covariances say that both are exact to 1 mm, 1 mrad,
+/// 1 mm/s and 1 mrad/s, because filters take no zeros.
 nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time);
 using Transforms = std::vector<geometry_msgs::TransformStamped>;
 /// Transforms of ego and CBVs.
@@ -38,12 +40,14 @@ std::string cameraFrame(const std::string& vehicle_id, const std::string& camera
 tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
                             const session::VehicleRigs* rigs = nullptr);
 
-/// What people and tools look at, besides the session's own messages: /ego/odometry (while someone
-/// listens) and the transforms of ego and CBVs, `map` -> `<vehicle>/base_link` at every tick and,
-/// once a vehicle, those of its camera. Nothing of the session is computed from it.
+/// What people and tools look at, besides the session's own messages: what an ego's sensors would
+/// tell (EgoSensors), and the transforms of ego and CBVs, `map` -> `<vehicle>/base_link` at every
+/// tick and, once a vehicle, those of its camera. Nothing of the session is computed from it.
 class Display {
  public:
-  explicit Display(ros::NodeHandle& node);
+  explicit Display(ros::NodeHandle& node) : node_(node) {}
+  /// What the ego senses in a session; `setup` must outlive this object.
+  void showSensors(const session::SessionSetup& setup);
   /// From now on tf holds the camera frames too.
   void showCameras(const session::VehicleRigs& rigs) { rigs_ = rigs; }
   void publish(const traffic::TrafficSnapshot& snapshot);
@@ -51,7 +55,8 @@ class Display {
  private:
   void mountCameras(const traffic::TrafficSnapshot& snapshot);
 
-  ros::Publisher odometry_;
+  ros::NodeHandle& node_;
+  std::optional<EgoSensors> sensors_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster mounts_;
   std::optional<session::VehicleRigs> rigs_;

@@ -31,6 +31,13 @@ Topic cameraInfoOf(int slot, const std::string& camera) {
   return {slot == kEgoSlot ? ChannelId::kEgoCameraInfo : ChannelId::kCbvCameraInfo, slot, camera};
 }
 
+Topic egoCommandOf(const SessionGraph& graph) {
+  for (const Channel& row : channels()) {
+    if (row.use == Use::kCommand && row.published.holds(graph)) return row.id;
+  }
+  return ChannelId::kEgoControl;
+}
+
 std::vector<Topic> topicsOfSlot(const Channel& channel, int slot,
                                 const session::VehicleRigs& rigs) {
   if (!channel.per_camera) return {{channel.id, slot}};

@@ -43,6 +43,9 @@ Topic controlOf(int slot);
 Topic imageOf(int slot, const std::string& camera = rendering::kFrontCamera);
 Topic cameraInfoOf(int slot, const std::string& camera = rendering::kFrontCamera);
 
+/// The topic on which the ego's planner commands: that of ego.command where the ego is external.
+Topic egoCommandOf(const SessionGraph& graph);
+
 /// The topics of a channel for one vehicle: one, or one per camera of its rig.
 std::vector<Topic> topicsOfSlot(const Channel& channel, int slot, const session::VehicleRigs& rigs);
 /// The topics of a channel in a session with `max_cbv` slots.

@@ -77,6 +77,7 @@ ReplayNode::ReplayNode(const Parameters& parameters, StopSignal& stop)
   const bool overwrite = parameters.flag("overwrite", false);
   requireReplayFolder(bag_, results_, overwrite);
   folder_ = std::make_unique<record::ResultFolder>(results_, kReplayLaunch, overwrite);
+  display_.showSensors(session_.setup());
   if (graph_.has(kCameraNode)) display_.showCameras(session_.setup().rigs());
 }
 
@@ -242,7 +243,9 @@ int runReplay(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
     requireKnownLaunchArguments();
-    return ReplayNode(parameters, stop).run();
+    const int exit_code = ReplayNode(parameters, stop).run();
+    if (exit_code == core::ExitCode::kPassed) endLaunch(stop);
+    return exit_code;
   } catch (const core::InputError&) {
     const std::string given = parameters.text("results");
     writeRefusal(given.empty() ? fs::path() : fs::path(parameters.text("folder")) / given);

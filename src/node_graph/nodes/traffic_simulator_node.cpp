@@ -48,6 +48,8 @@ TrafficSimulatorNode::TrafficSimulatorNode(const Parameters& parameters, StopSig
   folder_ = std::make_unique<record::ResultFolder>(results_, kDeployment, overwrite);
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
+  if (graph_.external_ego) external_ego_ = std::make_unique<ExternalEgo>(*setup_, graph_);
+  display_.showSensors(*setup_);
   if (graph_.has(kCameraNode)) display_.showCameras(setup_->rigs());
   participants_ = ParticipantTracker(graph_.participants);
   pacer_ = makePacer();
@@ -135,7 +137,9 @@ void TrafficSimulatorNode::listen() {
           participants_.note(*ack);
       }));
   for (const Channel& row : channels()) {
-    if (row.use != Use::kAnswer || !listensTo(row, Party::kSimulator, graph_)) continue;
+    const bool external = external_ego_ && row.publisher == Party::kEgoPlanner;
+    const bool answers = row.use == Use::kAnswer && listensTo(row, Party::kSimulator, graph_);
+    if (external ? row.id != external_ego_->topic().id : !answers) continue;
     for (const Topic& topic : topicsOf(row, graph_)) listenTo(topic);
   }
 }
@@ -144,17 +148,24 @@ void TrafficSimulatorNode::listenTo(const Topic& topic) {
   inputs_.push_back(topic.row().type.subscribe(
       gate_, node_, topic.name(), siblingNodes(publishersOf(topic, graph_)),
       [this, topic](const AnyMessage& message) { return takeAnswer(topic, message); }));
-  if (topic.id == ChannelId::kEgoControl) ego_control_ = inputs_.back();
+  if (external_ego_ && topic == external_ego_->topic()) ego_command_ = inputs_.back();
 }
 
 /// Returns why a message cannot be used; empty when it can.
 std::string TrafficSimulatorNode::takeAnswer(const Topic& topic, const AnyMessage& message) {
+  if (external_ego_ && topic == external_ego_->topic()) return takeCommand(message);
   std::string wrong = unusable(message, topic, graph_);
   if (wrong.empty() && topic.id == ChannelId::kSelection)
     wrong = unusable(*messageAs<msgs::CbvSelection>(message), setup_->network());
   if (!wrong.empty()) return wrong;
   pacer_->take(topic, message);
   return {};
+}
+
+std::string TrafficSimulatorNode::takeCommand(const AnyMessage& message) {
+  const EgoAnswer answer = external_ego_->take(message);
+  if (answer.control) pacer_->take(ChannelId::kEgoControl, answer.control);
+  return answer.refused;
 }
 
 /// A fault that a node reports is recorded once, whoever else reports it too.
@@ -165,10 +176,12 @@ void TrafficSimulatorNode::noteFault(const std::string& source, const std::strin
   world_->recordFault(source, text);
 }
 
+std::string TrafficSimulatorNode::commandName() const { return external_ego_->topic().name(); }
+
 std::optional<SessionEnd> TrafficSimulatorNode::externalEgoGone() const {
   if (!graph_.external_ego || !published_) return std::nullopt;
-  const std::string topic = Topic(ChannelId::kEgoControl).name();
-  if (ego_control_.getNumPublishers() > 0 &&
+  const std::string topic = commandName();
+  if (ego_command_.getNumPublishers() > 0 &&
       !connections_.stoppedListening(gate_.firstSender(topic)))
     return std::nullopt;
   return SessionEnd{SessionStatus::kError, "the external ego planner",
@@ -179,14 +192,24 @@ std::optional<SessionEnd> TrafficSimulatorNode::waitForParticipants() {
   watch_.setOtherCause([this] { return externalEgoGone(); });
   const auto missing = [this] {
     std::vector<Missing> missing = watch_.notReady();
-    if (graph_.external_ego && ego_control_.getNumPublishers() == 0) {
-      missing.insert(missing.begin(), {"the external ego planner",
-                                       "no node publishes " + Topic(ChannelId::kEgoControl).name() +
-                                           " yet; start yours (external_ego_node is an example)"});
-    }
+    if (graph_.external_ego && ego_command_.getNumPublishers() == 0)
+      missing.insert(missing.begin(), {"the external ego planner", missingEgo()});
     return missing;
   };
   return watch_.waitFor(missing, limits_.start);
+}
+
+/// Commands that go elsewhere are named at once, and again at the end of patience.
+std::string TrafficSimulatorNode::missingEgo() {
+  constexpr double kAskAgainAfter = 1.0;  // [s]
+  if (!asked_master_ || secondsSince(*asked_master_) > kAskAgainAfter) {
+    const std::string misdirected = misdirectedCommands(graph_);
+    ROS_ERROR_COND(!misdirected.empty() && misdirected != misdirected_, "%s", misdirected.c_str());
+    misdirected_ = misdirected;
+    asked_master_ = std::chrono::steady_clock::now();
+  }
+  return "no node publishes " + commandName() + " yet; " +
+         (misdirected_.empty() ? "start yours (external_ego_node is an example)" : misdirected_);
 }
 
 void TrafficSimulatorNode::runTicks() {
@@ -212,8 +235,9 @@ void TrafficSimulatorNode::publishTick() {
   published_ = shared(std::move(message));
   clock_.publish(clock);
   gate_.setNewestTick(published_->tick, setup_->options().simulation_step);
-  traffic_.publish(published_);
   display_.publish(snapshot);
+  if (external_ego_) external_ego_->published(snapshot);
+  traffic_.publish(published_);
   pacer_->published(published_);
 }
 
@@ -259,7 +283,9 @@ int runTrafficSimulator(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
     requireKnownLaunchArguments();
-    return TrafficSimulatorNode(parameters, stop).run();
+    const int exit_code = TrafficSimulatorNode(parameters, stop).run();
+    if (exit_code == core::ExitCode::kPassed) endLaunch(stop);
+    return exit_code;
   } catch (const core::InputError&) {
     writeRefusal(parameters.text("results"));
     noteRefusal();

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "node_graph/lockstep/session_watch.h"
 #include "node_graph/messages/display.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/nodes/external_ego.h"
 #include "node_graph/result_reserve.h"
 #include "node_graph/session_files.h"
 #include "record/result_folder.h"
@@ -49,8 +51,11 @@ class TrafficSimulatorNode {
   void listen();
   void listenTo(const Topic& topic);
   std::string takeAnswer(const Topic& topic, const AnyMessage& message);
+  std::string takeCommand(const AnyMessage& message);
   void noteFault(const std::string& source, const std::string& text);
+  std::string commandName() const;
   std::optional<SessionEnd> externalEgoGone() const;
+  std::string missingEgo();
   std::optional<SessionEnd> waitForParticipants();
   void runTicks();
   void publishTick();
@@ -81,7 +86,10 @@ class TrafficSimulatorNode {
   ros::Publisher records_;
   Display display_;
   std::vector<ros::Subscriber> inputs_;
-  ros::Subscriber ego_control_;
+  std::unique_ptr<ExternalEgo> external_ego_;
+  ros::Subscriber ego_command_;  ///< of the external ego
+  std::string misdirected_;      ///< commands that nobody listens to
+  std::optional<std::chrono::steady_clock::time_point> asked_master_;
   std::unique_ptr<session::World> world_;
   std::unique_ptr<ResultReserve> reserve_;
   std::unique_ptr<Pacer> pacer_;

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "node_graph/nodes/scene_node.h"
+
+#include <optional>
+
+#include "core/program.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
+#include "node_graph/session_graph.h"
+
+namespace cdiff::node_graph {
+
+int SceneNode::run() {
+  constexpr std::uint32_t kQueueSize = 100;
+  using visualization_msgs::MarkerArray;
+  const auto name = [](ChannelId id) { return Topic(id).name(); };
+  markers_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMarkers), kQueueSize);
+  map_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMapMarkers), 1, true);
+  const auto at_once = ros::TransportHints().tcpNoDelay();
+  const ros::Subscriber inputs[] = {
+      node_.subscribe<msgs::SessionInfo>(
+          name(ChannelId::kSession), 1,
+          [this](const msgs::SessionInfo::ConstPtr& info) { takeSession(*info); }, {}, at_once),
+      node_.subscribe<msgs::CbvSelection>(
+          name(ChannelId::kSelection), kQueueSize,
+          [this](const msgs::CbvSelection::ConstPtr& selection) { takeSelection(selection); }, {},
+          at_once),
+      node_.subscribe<msgs::TrafficSnapshot>(
+          name(ChannelId::kTraffic), kQueueSize,
+          [this](const msgs::TrafficSnapshot::ConstPtr& snapshot) { takeTraffic(*snapshot); }, {},
+          at_once)};
+  while (!stop_.raised() && ros::ok()) spin(kSpinPeriod);
+  return core::ExitCode::kPassed;
+}
+
+void SceneNode::takeSession(const msgs::SessionInfo& info) {
+  try {
+    setup_ = setupOf(info);
+  } catch (const core::InputError& error) {
+    ROS_ERROR("the session cannot be shown: %s", error.what());
+    return;
+  }
+  markers_ = SessionMarkers();
+  selection_.reset();
+  map_output_.publish(mapMarkers(*setup_));
+}
+
+void SceneNode::takeSelection(const msgs::CbvSelection::ConstPtr& selection) {
+  selection_ = selection;
+}
+
+/// As the bag has it, the selection of a tick comes after its snapshot: routes and conflict points
+/// are those of the decision before.
+void SceneNode::takeTraffic(const msgs::TrafficSnapshot& message) {
+  const bool final = message.status != msgs::TrafficSnapshot::RUNNING;
+  if (!setup_ || (!message.decision_tick && !final)) return;
+  try {
+    const traffic::TrafficSnapshot snapshot = fromMsg(message);
+    std::optional<cbv::CbvSelection> selection;
+    if (selection_) selection = fromMsg(*selection_, setup_->network());
+    markers_output_.publish(markers_.build(snapshot, selection ? &*selection : nullptr));
+  } catch (const core::InputError& error) {
+    ROS_ERROR_THROTTLE(1.0, "a tick cannot be shown: %s", error.what());
+  }
+}
+
+}  // namespace cdiff::node_graph

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <memory>
+
+#include "e2e_cdiff/CbvSelection.h"
+#include "e2e_cdiff/SessionInfo.h"
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "node_graph/lockstep/node_process.h"
+#include "node_graph/messages/markers.h"
+#include "ros/ros.h"
+#include "session/session_setup.h"
+
+namespace cdiff::node_graph {
+
+/// Shows in rviz what `rosbag play` of a session's bag publishes: makes the markers that the
+/// metrics node makes while a session runs. No session waits for it.
+class SceneNode {
+ public:
+  explicit SceneNode(StopSignal& stop) : stop_(stop) {}
+  /// Until a stop signal; returns the exit code.
+  int run();
+
+ private:
+  void takeSession(const ::e2e_cdiff::SessionInfo& info);
+  void takeSelection(const ::e2e_cdiff::CbvSelection::ConstPtr& selection);
+  void takeTraffic(const ::e2e_cdiff::TrafficSnapshot& snapshot);
+
+  StopSignal& stop_;
+  ros::NodeHandle node_;
+  ros::Publisher markers_output_;
+  ros::Publisher map_output_;
+  std::unique_ptr<session::SessionSetup> setup_;
+  SessionMarkers markers_;
+  ::e2e_cdiff::CbvSelection::ConstPtr selection_;  ///< the last one
+};
+
+}  // namespace cdiff::node_graph
