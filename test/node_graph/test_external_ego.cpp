@@ -49,15 +49,15 @@ msgs::AckermannCommand ackermann(std::uint64_t tick, double speed, double angle)
   return command;
 }
 
-/// Poses on the ego's route, 0.5 s apart.
-nav_msgs::Path trajectory(double begin, const std::string& frame = "map") {
+/// Six poses on the ego's route, `period` [s] apart.
+nav_msgs::Path trajectory(double begin, const std::string& frame = "map", double period = 0.5) {
   nav_msgs::Path path;
   path.header.frame_id = frame;
   path.header.stamp = toStamp(0.2);
   for (int i = 1; i <= 6; ++i) {
     path.poses.emplace_back();
-    path.poses.back().header.stamp = toStamp(begin + 0.5 * i);
-    path.poses.back().pose.position.x = 5.0 + 8.0 * (begin + 0.5 * i);
+    path.poses.back().header.stamp = toStamp(begin + period * i);
+    path.poses.back().pose.position.x = 5.0 + 8.0 * (begin + period * i);
     path.poses.back().pose.position.y = -2.0;
   }
   return path;
@@ -132,7 +132,7 @@ TEST_F(ExternalEgoTest, WhatTheVehicleCannotFollowBecomesFullBrakingWithAFault) 
   msgs::AckermannCommand unknown = ackermann(4, 8.0, 0.0);
   unknown.drive_by = 2;
   expectFullBrake(controlIn(commandedBy("ackermann").take(shared(unknown))), "drive_by is 2");
-  expectFullBrake(controlIn(commandedBy("trajectory").take(shared(trajectory(-9.0)))),
+  expectFullBrake(controlIn(commandedBy("trajectory").take(shared(trajectory(0.0, "map", 0.03)))),
                   "lies in the past");
   expectFullBrake(controlIn(commandedBy("trajectory").take(shared(trajectory(0.2, "odom")))),
                   "frame is 'odom'; expected 'map'");

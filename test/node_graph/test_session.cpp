@@ -229,7 +229,8 @@ TEST_F(Session, ExternalEgoDrivesInLockstep) {
   EXPECT_EQ(summary()["late_answers"]["planners"]["ego:external"]["asked"], 20)
       << log;  // 2 s at 10 Hz; the last tick decides nothing
   EXPECT_EQ(summary()["late_answers"]["count"], 0);
-  EXPECT_EQ(summary()["planner_latency_ms"]["ego:external"]["n"], 20) << "the simulator's own times";
+  EXPECT_EQ(summary()["planner_latency_ms"]["ego:external"]["n"], 20)
+      << "the simulator's own times";
   EXPECT_GT(summary()["ego"]["route_completion_percent"], 0.0);
 }
 
