@@ -232,6 +232,17 @@ TEST_F(EgoSession, AGoodEndIsNoDeath) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
+TEST_F(EgoSession, PythonFindsThePedalMapBesideTheMessages) {
+  session_.start(
+      "/usr/bin/python3 -B -c 'from e2e_cdiff.msg import AckermannCommand; from "
+      "e2e_cdiff.pedal_map "
+      "import pedals_for; print(round(pedals_for(6.0, -4.0)[1], 3))' >pedals");
+  EXPECT_LT(session_.endAfter(30.0), 30.0);
+  // Half of full braking, which is capped at 8 m/s^2.
+  EXPECT_EQ(core::readFile(session_.folder() / "pedals", "pedals"), "0.5\n")
+      << session_.log();
+}
+
 TEST_F(EgoSession, NoArgumentIsListedAsRequiredButTheBagOfAReplay) {
   session_.start(
       "roslaunch --ros-args e2e_cdiff session.launch >session; roslaunch --ros-args e2e_cdiff "
