@@ -52,7 +52,7 @@ add_library(e2e_cdiff_transforms INTERFACE)
 target_include_directories(e2e_cdiff_transforms SYSTEM INTERFACE ${tf2_ros_INCLUDE_DIRS})
 target_link_libraries(e2e_cdiff_transforms INTERFACE ${CDIFF_TF2_ROS_LIBRARY} ${CDIFF_TF2_LIBRARY})
 
-# Type maps for SUMO's netconvert, and SUMO_HOME where the environment's is no folder.
+# Type maps for SUMO's netconvert.
 file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION})
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/sumo ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sumo SYMBOLIC)
 catkin_add_env_hooks(50.e2e_cdiff SHELLS sh DIRECTORY ${PROJECT_SOURCE_DIR}/env-hooks)

@@ -15,6 +15,7 @@ using core::ExitCode;
 
 void addRunCommand(CLI::App& program, int& exit_code);
 void addEvaluateCommand(CLI::App& program, int& exit_code);
+void addNewCommand(CLI::App& program, int& exit_code);
 void addValidateCommand(CLI::App& program, int& exit_code);
 void addImportCommand(CLI::App& program, int& exit_code);
 void addMetricCommand(CLI::App& program, int& exit_code);

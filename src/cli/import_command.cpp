@@ -9,11 +9,12 @@
 #include "e2e_cdiff/map/drivable_area.h"
 #include "map/import/network_import.h"
 #include "map/lane_graph.h"
+#include "page/pictures/edge_map.h"
 
 namespace cdiff::cli {
 namespace {
 
-void importOne(const std::string& source, const std::string& output) {
+void importOne(const std::string& source, const std::string& output, const std::string& picture) {
   const map::ImportedNetwork imported = map::importNetwork(source);
   const map::RoadNetwork network = map::RoadNetwork::fromText(imported.text, source);
   const map::DrivableArea area(network);
@@ -28,6 +29,7 @@ void importOne(const std::string& source, const std::string& output) {
   if (!turns.empty()) std::cout << "turns     " << turns << "\n";
   for (const std::string& change : imported.changes) std::cout << "change    " << change << "\n";
   if (!output.empty()) core::writeFileAtomically(output, imported.text);
+  if (!picture.empty()) core::writeFileAtomically(picture, page::edgeMapSvg(network, std::nullopt));
 }
 
 }  // namespace
@@ -35,14 +37,17 @@ void importOne(const std::string& source, const std::string& output) {
 void addImportCommand(CLI::App& program, int& exit_code) {
   auto source = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
+  auto picture = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("import",
                                              "Make a SUMO network, an OpenDRIVE or an "
                                              "OpenStreetMap file usable, and say what was changed");
   command->add_option("source", *source, "*.net.xml, *.xodr, *.osm or a shipped network")
       ->required();
   command->add_option("--output", *output, "Also write the network to this file");
-  command->callback([source, output, &exit_code] {
-    importOne(*source, *output);
+  command->add_option("--picture", *picture,
+                      "Also write a map with the names of all edges to this file (*.svg)");
+  command->callback([source, output, picture, &exit_code] {
+    importOne(*source, *output, *picture);
     exit_code = ExitCode::kPassed;
   });
 }

@@ -55,6 +55,7 @@ void addCommands(CLI::App& program, int& exit_code) {
   using namespace cdiff::cli;
   addRunCommand(program, exit_code);
   addEvaluateCommand(program, exit_code);
+  addNewCommand(program, exit_code);
   addValidateCommand(program, exit_code);
   addImportCommand(program, exit_code);
   addMetricCommand(program, exit_code);

@@ -18,6 +18,7 @@
 #include "record/result_folder.h"
 #include "record/session_text.h"
 #include "session/closed_loop.h"
+#include "session/scenario_review.h"
 #include "session/session_request.h"
 #include "suite/seal.h"
 #include "video/session_video.h"
@@ -192,6 +193,8 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   finishResult(writer, secondsSince(begin));
   const int exit_code = video.finish(writer, writer.exitCode());
   printTable(writer, output);
+  if (writer.result().verdict.outcome == record::Outcome::kNotJudged && options.verdict.judge)
+    std::cerr << "cdiff: NOT JUDGED: the scenario has no rules, so exit code 0 means nothing\n";
   return !bag_error.empty() && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
 }
 
@@ -203,6 +206,8 @@ int runSession(const session::ScenarioOptions& options, const RunOutput& output)
   const std::atomic<bool>& stop = core::catchStopSignals();
   record::requireFreeFolder(output.folder, output.overwrite);
   const session::SessionSetup setup(options);
+  for (const std::string& warning : session::scenarioWarnings(setup))
+    std::cerr << "cdiff: warning: " << warning << "\n";
   const Clock::time_point begin = Clock::now();
   const auto claim = [&] {
     return record::ResultFolder(output.folder, "cdiff run", output.overwrite);

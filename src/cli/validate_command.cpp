@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The command `cdiff validate`: checks scenarios without running them.
+/// The command `cdiff validate`: checks scenarios without driving the ego.
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -8,18 +8,58 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/scenario_keys.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "map/lane_graph.h"
 #include "planners/registry.h"
+#include "session/scenario_review.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
+#include "suite/seal.h"
 
 namespace cdiff::cli {
 namespace {
 
-/// Checks one scenario as far as it goes without starting SUMO; returns whether it is good.
-bool validateOne(const std::string& scenario_name, bool print) {
+struct ValidateArguments {
+  std::vector<std::string> scenarios;
+  bool print = false;
+  std::string group;  ///< print this group alone
+  bool fast = false;  ///< do not start SUMO
+  bool list = false;  ///< list planners instead
+};
+
+/// What validate says about the traffic; adds to `warnings`. `reason` not to start SUMO, or empty.
+std::string trafficText(const session::SessionSetup& setup, const std::string& reason,
+                        std::vector<std::string>& warnings) {
+  constexpr double kPatience = 10.0;  // [s]
+  if (!reason.empty()) return "traffic not tried on SUMO (" + reason + ")";
+  const session::TrafficTrial trial = session::tryTraffic(setup, kPatience);
+  for (std::string& text : session::trialWarnings(setup.options(), trial))
+    warnings.push_back(std::move(text));
+  return "traffic tried on SUMO for " + core::formatFixed(trial.simulated, 0) + " s, at most " +
+         std::to_string(trial.most) + " vehicles at a time";
+}
+
+void describeScenario(const session::SessionSetup& setup, const ValidateArguments& arguments,
+                      bool sealed) {
+  const session::ScenarioOptions& options = setup.options();
+  std::vector<std::string> warnings = session::scenarioWarnings(setup);
+  const std::string traffic =
+      trafficText(setup, arguments.fast ? "--fast" : (sealed ? "sealed suite" : ""), warnings);
+  std::ostream& out = arguments.print ? std::cerr : std::cout;  // printed: can be a scenario file
+  out << options.name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length())
+      << " m; " << traffic << ")\n";
+  const std::string turns = map::turnRoundText(setup.network());
+  if (!turns.empty()) out << "  network: " << turns << "\n";
+  for (const std::string& change : setup.import().changes) out << "  network: " << change << "\n";
+  out << std::flush;
+  for (const std::string& warning : warnings)
+    std::cerr << "cdiff: warning: " << options.name << ": " << warning << "\n";
+}
+
+/// Checks one scenario up to the session's start; returns whether it is good.
+bool validateOne(const std::string& scenario_name, const ValidateArguments& arguments) {
   try {
     session::SessionRequest request;
     request.scenario = scenario_name;
@@ -27,13 +67,8 @@ bool validateOne(const std::string& scenario_name, bool print) {
     const session::SessionSetup setup(options);
     if (options.ego_planner != planning::kExternalPlanner) setup.makeEgoPlanner();
     setup.makeCbvPlanner();
-    std::ostream& out = print ? std::cerr : std::cout;  // what is printed can be a scenario file
-    out << scenario_name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length())
-        << " m)\n";
-    const std::string turns = map::turnRoundText(setup.network());
-    if (!turns.empty()) out << "  network: " << turns << "\n";
-    for (const std::string& change : setup.import().changes) out << "  network: " << change << "\n";
-    if (print) std::cout << core::dumpOptions(options, true);
+    describeScenario(setup, arguments, suite::sealedSuiteOf(scenario_name).has_value());
+    if (arguments.print) std::cout << scenarioKeys(options, arguments.group);
     return true;
   } catch (const core::InputError& error) {
     const std::string text = error.what();
@@ -65,19 +100,25 @@ void printPlanners() {
 }  // namespace
 
 void addValidateCommand(CLI::App& program, int& exit_code) {
-  auto scenarios = std::make_shared<std::vector<std::string>>();
-  auto print = std::make_shared<bool>(false);
-  auto list = std::make_shared<bool>(false);
-  CLI::App* command = program.add_subcommand("validate", "Check scenarios without running them");
-  command->add_option("scenarios", *scenarios,
+  auto arguments = std::make_shared<ValidateArguments>();
+  CLI::App* command = program.add_subcommand(
+      "validate", "Check scenarios up to the session's start, their traffic on SUMO included");
+  command->add_option("scenarios", arguments->scenarios,
                       "Scenario files or names (default: all shipped ones)");
-  command->add_flag("--print", *print, "Print all keys with their values, meaning and range");
-  command->add_flag("--planners", *list, "List the planners that a scenario can name, and end");
-  command->callback([scenarios, print, list, &exit_code] {
-    if (*list) return printPlanners();
-    const auto names = scenarios->empty() ? session::shippedScenarios() : *scenarios;
+  command->add_flag("--print", arguments->print,
+                    "Print all keys with their values, meaning and range; '# default' marks what "
+                    "differs from it");
+  command->add_option("--group", arguments->group, "Print this group alone");
+  command->add_flag("--fast", arguments->fast, "Do not start SUMO to try the traffic");
+  command->add_flag("--planners", arguments->list,
+                    "List the planners that a scenario can name, and end");
+  command->callback([arguments, &exit_code] {
+    if (arguments->list) return printPlanners();
+    if (!arguments->group.empty()) arguments->print = true;
+    const auto names =
+        arguments->scenarios.empty() ? session::shippedScenarios() : arguments->scenarios;
     for (const std::string& name : names) {
-      if (!validateOne(name, *print)) exit_code = ExitCode::kBadInput;
+      if (!validateOne(name, *arguments)) exit_code = ExitCode::kBadInput;
     }
   });
 }

@@ -177,12 +177,27 @@ std::vector<Combination> productOf(const MatrixOptions& matrix, const std::strin
 
 }  // namespace
 
+namespace {
+
+/// What tables call a scenario: its `name`. A file that cannot be loaded is refused when its runs
+/// are resolved.
+std::string labelOf(const std::string& scenario) {
+  if (!core::isFile(scenario)) return scenario;
+  try {
+    return session::loadScenario(scenario).name;
+  } catch (const InputError&) {
+    return fs::path(scenario).stem().string();
+  }
+}
+
+}  // namespace
+
 std::vector<ScenarioLevel> scenarioLevels(const MatrixOptions& matrix, const std::string& source) {
   std::vector<ScenarioLevel> levels;
   for (const std::string& name : scenariosOf(matrix)) {
     session::SessionRequest request;
     request.scenario = name;
-    levels.push_back({core::isFile(name) ? fs::path(name).stem().string() : name, request});
+    levels.push_back({labelOf(name), request});
   }
   if (!matrix.bench2drive.file.empty()) {
     for (ScenarioLevel& level : bench2DriveLevels(matrix.bench2drive)) levels.push_back(level);

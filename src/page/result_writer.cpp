@@ -39,8 +39,9 @@ class ResultWriter::Record {
         timeline_(setup.options().simulation_step),
         plans_(setup.options().simulation_step),
         front_views_(setup),
+        hold_ups_(setup),
         result_{setup,     timeline_,    cbv_,     approaches_, plans_,
-                guidance_, front_views_, driving_, facts} {
+                guidance_, front_views_, driving_, hold_ups_,   facts} {
     folder_.remove(
         {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"});
     folder_.write("session.yaml", record::sessionYaml(setup, facts));
@@ -68,6 +69,7 @@ class ResultWriter::Record {
     guidance_.observe(record);
     front_views_.observe(snapshot);
     driving_.observe(snapshot);
+    hold_ups_.observe(snapshot);
     writeTrace(snapshot);
   }
 
@@ -175,6 +177,7 @@ class ResultWriter::Record {
   record::GuidanceLog guidance_;
   record::FrontViewLog front_views_;
   record::DrivingLog driving_;
+  record::HoldUpLog hold_ups_;
   record::LatencyLog latencies_;
   record::LateLog late_;
   record::SessionResult result_;

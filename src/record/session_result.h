@@ -9,6 +9,7 @@
 #include "metrics/session_metrics.h"
 #include "record/logs/cbv_log.h"
 #include "record/logs/driving_log.h"
+#include "record/logs/hold_up_log.h"
 #include "record/logs/plan_log.h"
 #include "record/logs/planner_logs.h"
 #include "record/verdict.h"
@@ -36,6 +37,7 @@ struct SessionResult {
   const GuidanceLog& guidance;
   const FrontViewLog& front_views;
   const DrivingLog& driving;
+  const HoldUpLog& hold_ups;
   RunFacts facts;
   traffic::SessionStatus status = traffic::SessionStatus::kError;
   double simulated_seconds = 0.0;

@@ -91,11 +91,21 @@ std::string contact(const SessionResult& result) {
          "; " + faultText(result.setup.options(), contacts) + ".";
 }
 
+/// Empty unless the session ended blocked or timed out.
+std::string holdUp(const SessionResult& result) {
+  const std::optional<HoldUp>& found = result.hold_ups.found();
+  return found ? holdUpText(*found, result.setup, result.status) : "";
+}
+
 }  // namespace
 
 std::vector<std::string> sessionStory(const SessionResult& result) {
   if (result.timeline.frames().empty()) return {drivenRoute(result)};
-  return {drivenRoute(result), approach(result), contact(result)};
+  std::vector<std::string> story = {drivenRoute(result)};
+  if (const std::string cause = holdUp(result); !cause.empty()) story.push_back(cause);
+  story.push_back(approach(result));
+  story.push_back(contact(result));
+  return story;
 }
 
 namespace {
@@ -106,6 +116,11 @@ std::string row(const std::string& name, const std::string& value) {
   std::string text = "  " + name;
   text.resize(std::max(text.size() + 1, kNameWidth + 2), ' ');
   return text + value + "\n";
+}
+
+std::string holdUpRow(const SessionResult& result) {
+  const std::string cause = holdUp(result);
+  return cause.empty() ? "" : row("  held up by", cause);
 }
 
 std::string headRows(const SessionResult& result) {
@@ -120,7 +135,7 @@ std::string headRows(const SessionResult& result) {
              options.name + ", seed " + std::to_string(options.seed) + ", " + options.mode) +
          row("planners", "ego " + options.ego_planner + ", CBV " + options.cbv_planner) +
          row("method", session::methodText(session::methodOf(options))) +
-         row("status", traffic::toText(result.status)) + row("time", time);
+         row("status", traffic::toText(result.status)) + holdUpRow(result) + row("time", time);
 }
 
 std::string measureRows(const metrics::SessionMeasures& measures) {

@@ -56,6 +56,41 @@ Json egoObject(const metrics::SessionMeasures& measures) {
   return object;
 }
 
+/// What the vehicle or light is that somebody waits for.
+const char* reasonText(Wait::For reason) {
+  constexpr const char* kTexts[] = {"vehicle", "light", "stop_line", "nothing"};
+  return kTexts[static_cast<std::size_t>(reason)];
+}
+
+Json waitList(const WaitChain& chain) {
+  Json list = Json::array();
+  for (const Wait& wait : chain.waits) {
+    list.push_back({{"who", wait.vehicle},
+                    {"waits_for", reasonText(wait.reason)},
+                    {"id", wait.obstacle.empty() ? Json(nullptr) : Json(wait.obstacle)},
+                    {"junction", wait.junction.empty() ? Json(nullptr) : Json(wait.junction)}});
+  }
+  return list;
+}
+
+/// What held the ego up; null unless the session ended blocked or timed out.
+Json holdUpObject(const SessionResult& result) {
+  const std::optional<HoldUp>& found = result.hold_ups.found();
+  if (!found) return nullptr;
+  const bool stood = !found->chain.waits.empty();
+  return {{"text", holdUpText(*found, result.setup, result.status)},
+          {"begin_seconds", stood ? Json(found->begin) : Json(nullptr)},
+          {"seconds", found->seconds},
+          {"at_end", found->at_end},
+          {"chain", waitList(found->chain)},
+          {"ring", found->chain.ring},
+          {"traffic_still_seconds", number(found->traffic_still)},
+          {"cbvs", found->cbvs},
+          {"stood_seconds", found->stood},
+          {"slow_seconds", found->slow},
+          {"slow_behind", found->slow_behind.empty() ? Json(nullptr) : Json(found->slow_behind)}};
+}
+
 /// What guidance did to the plans of CBVs, by objective; null without guidance.
 Json guidanceObject(const GuidanceLog& log) {
   if (log.series().empty()) return nullptr;
@@ -150,6 +185,7 @@ Json headOf(const SessionResult& result) {
 std::string summaryJson(const SessionResult& result) {
   Json summary = headOf(result);
   summary["ego"] = egoObject(result.measures);
+  summary["hold_up"] = holdUpObject(result);
   summary["cbv"] = cbvObject(result);
   summary["guidance"] = guidanceObject(result.guidance);
   summary["guidance_trust_region_share"] = number(result.guidance.trustRegion().mean);

@@ -233,8 +233,10 @@ Outcome outcomeFrom(SessionStatus status, const std::vector<Check>& checks) {
 std::vector<std::string> reasonsNotToJudge(const session::ScenarioOptions& options,
                                            const metrics::SessionMeasures& measures) {
   std::vector<std::string> reasons = {
-      options.verdict.judge ? "the scenario has no rules (group 'verdict')"
-                            : "the scenario is not to be judged (verdict.judge is false)"};
+      options.verdict.judge
+          ? "the scenario has no rules (group 'verdict'): the session cannot fail, whatever the "
+            "ego does"
+          : "the scenario is not to be judged (verdict.judge is false)"};
   const BlamedContacts contacts(measures, options.verdict.excusesUnavoidable(options.mode));
   if (!contacts.fault.empty()) reasons.push_back(atFaultText(contacts.fault));
   for (const std::string& text : faultlessTexts(contacts)) reasons.push_back(text);

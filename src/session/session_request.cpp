@@ -200,6 +200,8 @@ std::vector<double> readSamples(const std::filesystem::path& file) {
 
 namespace {
 
+constexpr const char* kBenchmarkProtocol = "rift_dev10";  ///< of Bench2Drive's routes
+
 /// A scenario made of a Bench2Drive route alone, with generated demand and the standard rules.
 ScenarioOptions bench2DriveScenario(const SessionRequest& request, const ScenarioOptions& base) {
   if (request.route.empty())
@@ -212,6 +214,7 @@ ScenarioOptions bench2DriveScenario(const SessionRequest& request, const Scenari
   ScenarioOptions options = base;
   options.name = "bench2drive_" + request.route;
   options.verdict = VerdictOptions::standard();
+  if (options.protocol.preset == kUsualProtocol) options.protocol.preset = kBenchmarkProtocol;
   options.route.bench2drive_file = fs::absolute(request.bench2drive).string();
   options.route.bench2drive_id = request.route;
   return options;
@@ -272,22 +275,40 @@ void fillSpeedTarget(metrics::MetricsOptions& options) {
     options.speed_target_samples.push_back(core::formatNumber(speed));
 }
 
-}  // namespace
-
-ScenarioOptions resolveRequest(const SessionRequest& request) {
-  // Which method, profile, protocol and trackers apply is only known when everything was read;
-  // their values then lie below everything else.
-  const MethodOptions method = loadMethod(applyRequest(request, {}).method);
+/// What lies below the keys of a scenario before the scenario's own choice of presets is known.
+ScenarioOptions unchosenBase(const MethodOptions& method) {
   ScenarioOptions base;
   base.planner_options = method.planner_options;
   base.ego_guidance_profile = method.ego_profile;
-  const ScenarioOptions first = applyRequest(request, base);
+  base.protocol.preset = kUsualProtocol;
+  return base;
+}
+
+/// Gives `base` the values of the presets that the scenario `first` names.
+void addPresets(const ScenarioOptions& first, const MethodOptions& method, ScenarioOptions& base) {
   const bool named = !first.guidance_profile.empty();
   base.guidance =
       profileOf("guidance_profile", named ? first.guidance_profile : method.profileOf(first.mode));
   base.ego_guidance = profileOf("ego_guidance_profile", first.ego_guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
   planning::nameTrackers(first.planner_options, base.planner_options);
+}
+
+}  // namespace
+
+ScenarioOptions defaultScenario() {
+  const MethodOptions method = loadMethod(ScenarioOptions().method);
+  ScenarioOptions options = unchosenBase(method);
+  addPresets(options, method, options);
+  return options;
+}
+
+ScenarioOptions resolveRequest(const SessionRequest& request) {
+  // Which method, profile, protocol and trackers apply is only known when everything was read;
+  // their values then lie below everything else.
+  const MethodOptions method = loadMethod(applyRequest(request, {}).method);
+  ScenarioOptions base = unchosenBase(method);
+  addPresets(applyRequest(request, base), method, base);
   ScenarioOptions options = applyRequest(request, base);
   fillSpeedTarget(options.metrics);
   options.validate();

@@ -57,6 +57,13 @@ std::string methodText(const MethodUse& method);
 /// InputError naming file, line (or case) and what was expected, also for a file without a sample.
 std::vector<double> readSamples(const std::filesystem::path& file);
 
+/// Preset of the protocol where a scenario names none, so that a route of any length can be driven;
+/// Bench2Drive's routes have the one of their benchmark.
+inline constexpr const char* kUsualProtocol = "any_length";
+
+/// A scenario that sets no key, as resolveRequest resolves it: what every key has by default.
+ScenarioOptions defaultScenario();
+
 /// What a user asks for on a command line or in a launch file, resolved to one scenario.
 /// Empty texts mean "not given".
 struct SessionRequest {

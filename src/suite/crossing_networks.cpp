@@ -166,4 +166,43 @@ RoadPlan drawDistrict(const NetworkSpec& spec, Draws& draws) {
   return District(spec, draws).plan();
 }
 
+namespace {
+
+std::string gridNode(int column, int row) {
+  return std::string(1, static_cast<char>('A' + column)) + std::to_string(row);
+}
+
+/// Both directions between two crossings.
+void addGridRoad(const std::string& first, const std::string& second, int priority,
+                 RoadPlan& plan) {
+  PlanEdge edge;
+  edge.priority = priority;
+  edge.id = first + second;
+  edge.from = first;
+  edge.to = second;
+  plan.edges.push_back(edge);
+  std::swap(edge.from, edge.to);
+  edge.id = second + first;
+  plan.edges.push_back(edge);
+}
+
+}  // namespace
+
+RoadPlan gridPlan(const std::string& name, int count, double spacing) {
+  constexpr int kMain = 9;
+  constexpr int kSide = 5;
+  RoadPlan plan;
+  plan.name = name;
+  plan.text = "A regular grid of crossings";
+  for (int column = 0; column < count; ++column) {
+    for (int row = 0; row < count; ++row) {
+      const Eigen::Vector3d position(column * spacing, row * spacing, 0.0);
+      plan.nodes.push_back({gridNode(column, row), position, "priority"});
+      if (column > 0) addGridRoad(gridNode(column - 1, row), gridNode(column, row), kMain, plan);
+      if (row > 0) addGridRoad(gridNode(column, row - 1), gridNode(column, row), kSide, plan);
+    }
+  }
+  return plan;
+}
+
 }  // namespace cdiff::suite

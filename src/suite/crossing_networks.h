@@ -6,10 +6,16 @@
 
 namespace cdiff::suite {
 
-// Networks whose roads cross: one crossing or T junction, and a district of several.
+// Networks whose roads cross: one crossing or T junction, a district of several, and a regular
+// grid.
 
 RoadPlan drawCrossing(const NetworkSpec& spec, Draws& draws);
 
 RoadPlan drawDistrict(const NetworkSpec& spec, Draws& draws);
+
+/// `count` x `count` crossings, `spacing` meters apart (at most 26): columns A, B, ... from west to
+/// east, rows 0, 1, ... from south to north; the edge from A0 to B0 is "A0B0". Streets along x have
+/// priority. Nothing is drawn.
+RoadPlan gridPlan(const std::string& name, int count, double spacing);
 
 }  // namespace cdiff::suite

@@ -27,9 +27,12 @@ Stretch manoeuvreOf(const map::Route& route) {
   return {junctions.front().first, junctions.back().second};
 }
 
-/// Sum of the changes of heading [deg].
-double turnOf(const map::Route& route, const Stretch& stretch) {
+}  // namespace
+
+double turnAlong(const map::Route& route) {
   constexpr double kBeside = 3.0;  // [m]
+  if (route.junctionStretches().empty()) return 0.0;
+  const Stretch stretch = manoeuvreOf(route);
   const geometry::Polyline& path = route.path();
   double turn = 0.0;
   double before = path.headingAt(stretch.begin - kBeside);
@@ -41,7 +44,6 @@ double turnOf(const map::Route& route, const Stretch& stretch) {
   return turn / core::kDegree;
 }
 
-/// Empty when the angle is none of a maneuver's.
 std::string manoeuvreAt(double turn) {
   constexpr double kLeastTurn = 45.0;
   constexpr double kMostTurn = 135.0;
@@ -50,6 +52,8 @@ std::string manoeuvreAt(double turn) {
   if (std::abs(turn) < kLeastTurn || std::abs(turn) > kMostTurn) return "";
   return turn > 0.0 ? "left" : "right";
 }
+
+namespace {
 
 /// The lane from which traffic comes onto an internal one.
 map::LaneIndex approachOf(const map::RoadNetwork& network, map::LaneIndex lane) {
@@ -60,6 +64,10 @@ map::LaneIndex approachOf(const map::RoadNetwork& network, map::LaneIndex lane) 
 
 bool touches(const map::Lane& lane, const map::Route& route, const Stretch& stretch) {
   constexpr double kTouch = 1.5;  // between the middles of lanes [m]
+  const double reach = lane.centerline.length() + kTouch + 1.0;
+  const Eigen::Vector2d middle = route.path().positionAt(0.5 * (stretch.begin + stretch.end));
+  const double far = reach + 0.5 * (stretch.end - stretch.begin);
+  if ((lane.centerline.positionAt(0.0) - middle).norm() > far) return false;
   for (const Eigen::Vector3d& point : lane.centerline.resampled(1.0)) {
     const auto nearest = route.path().project(point.head<2>(), stretch.begin, stretch.end);
     if (nearest.distance < kTouch && std::abs(nearest.elevation - point.z()) < 2.0) return true;
@@ -67,8 +75,11 @@ bool touches(const map::Lane& lane, const map::Route& route, const Stretch& stre
   return false;
 }
 
-/// Edges from whose lanes, other than the route's own, streams cross or join it.
-int conflictsOf(const map::RoadNetwork& network, const map::Route& route, const Stretch& stretch) {
+}  // namespace
+
+int conflictsAlong(const map::RoadNetwork& network, const map::Route& route) {
+  if (route.junctionStretches().empty()) return 0;
+  const Stretch stretch = manoeuvreOf(route);
   std::set<std::string> approaches;
   const std::set<map::LaneIndex> own(route.lanes().begin(), route.lanes().end());
   for (map::LaneIndex i = 0; i < static_cast<map::LaneIndex>(network.lanes().size()); ++i) {
@@ -79,6 +90,8 @@ int conflictsOf(const map::RoadNetwork& network, const map::Route& route, const 
   }
   return static_cast<int>(approaches.size());
 }
+
+namespace {
 
 /// A tenth of a meter, so that files hold short numbers.
 double rounded(double value) { return std::round(10.0 * value) / 10.0; }
@@ -138,11 +151,10 @@ std::optional<SuiteRoute> planRoute(const map::LaneGraph& graph, const PlannedPa
   const std::optional<map::Route> route = routeOf(graph, planned);
   if (!route || !route->laneChanges().empty()) return std::nullopt;
   if (route->length() < kShortestRoute || route->length() > kLongestRoute) return std::nullopt;
-  const Stretch stretch = manoeuvreOf(*route);
-  planned.turn = rounded(turnOf(*route, stretch));
+  planned.turn = rounded(turnAlong(*route));
   planned.length = rounded(route->length());
   planned.manoeuvre = path.purpose.empty() ? manoeuvreAt(planned.turn) : path.purpose;
-  planned.conflicts = conflictsOf(graph.network(), *route, stretch);
+  planned.conflicts = conflictsAlong(graph.network(), *route);
   if (planned.manoeuvre.empty() || planned.conflicts == 0) return std::nullopt;
   return planned;
 }

@@ -34,6 +34,17 @@ struct SuiteRoute {
   std::int64_t seed = 1;      ///< root seed of its session
 };
 
+/// Change of heading of a route from before its first junction to after its last, positive to the
+/// left [deg]; 0 without junctions.
+double turnAlong(const map::Route& route);
+
+/// Edges from whose lanes, other than the route's own, streams cross or join the route between its
+/// first junction and its last; 0 without junctions.
+int conflictsAlong(const map::RoadNetwork& network, const map::Route& route);
+
+/// "left", "right" or "straight"; empty where the angle [deg] is none of a maneuver's.
+std::string manoeuvreAt(double turn);
+
 constexpr double kShortestRoute = 80.0;  ///< [m]
 constexpr double kLongestRoute = 200.0;  ///< [m]
 

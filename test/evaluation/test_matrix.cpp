@@ -51,6 +51,20 @@ TEST_P(ShippedMatrix, PlansRunsWithNamesOfTheirOwn) {
   EXPECT_EQ(scenarios.size(), plan.size());
 }
 
+TEST(Matrix, CallsAScenarioByItsName) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder.path() / "file.yaml").string();
+  std::ofstream(file) << "name: my_left\nnetwork: roundabout\nroute: {edges: [a]}\n";
+  MatrixOptions matrix;
+  matrix.scenarios = {file, "arterial_exit"};
+  const std::vector<PlannedRun> plan = planRuns(matrix, "matrix.yaml");
+  ASSERT_EQ(plan.size(), 2U);
+  EXPECT_EQ(plan[0].factors.at("scenario"), "my_left");
+  EXPECT_EQ(plan[1].factors.at("scenario"), "arterial_exit");
+  std::ofstream(file) << "name: arterial_exit\nnetwork: roundabout\nroute: {edges: [a]}\n";
+  expectIn("a name of its own", errorOf(matrix));
+}
+
 // The same text as when the scenario is resolved for each seed on its own.
 TEST(Matrix, EachSeedIsResolvedAsIfAlone) {
   MatrixOptions matrix = oneScenario();

@@ -52,8 +52,7 @@ BEFORE = {
     "docs/evaluation.md": ["cp $SOURCE/config/evaluations/smoke.yaml my_matrix.yaml", "cdiff evaluate smoke --results results/a",
                            "cdiff evaluate smoke --results results/b"],
     "docs/metrics.md": ["cp $DATA/reference/ttc_2d.csv pairs.csv", "cp $DATA/reference/shapiro_wilk.json cases.json"],
-    "docs/your_own_scenario.md": ["awk '/^schema_version/,/^```/' $SOURCE/docs/your_own_scenario.md | grep -v '```' > my_left.yaml",
-                                  "sed -n '/^<routes>/,/^<\\/routes>/p' $SOURCE/docs/your_own_scenario.md > grid.rou.xml"],
+    "docs/your_own_scenario.md": ["sed -n '/^<routes>/,/^<\\/routes>/p' $SOURCE/docs/your_own_scenario.md > grid.rou.xml"],
     "docs/replay.md": ["cdiff run roundabout_entry --record --results results/my_run"],
 }
 INSTEAD = {"cdiff metric wasserstein cases.json": "cdiff metric wasserstein $DATA/reference/wasserstein.json"}

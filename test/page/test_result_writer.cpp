@@ -297,7 +297,7 @@ TEST(ResultWriter, SummaryReportsWhatHappened) {
   EXPECT_DOUBLE_EQ(latency["max"], 2.2);
   EXPECT_EQ(latency["n"], 61);
   EXPECT_EQ(summary["verdict"], Json::parse(R"json({"outcome": "not_judged",
-                            "reasons": ["the scenario has no rules (group 'verdict')"],
+                            "reasons": ["the scenario has no rules (group 'verdict'): the session cannot fail, whatever the ego does"],
                             "decided_by": [],
                             "rules": [{"rule": "session", "outcome": "passed",
                                        "found": "the session ended with status 'timed_out'"}]

@@ -31,22 +31,24 @@ std::vector<std::string> storyUntil(std::uint64_t last, bool touch = false) {
 
 TEST(SessionStory, ReportsRouteApproachAndContact) {
   const std::vector<std::string> story = storyUntil(120, true);
-  ASSERT_EQ(story.size(), 3u);
+  ASSERT_EQ(story.size(), 4u);
   // 48 m of 190 m.
   EXPECT_EQ(story[0], "The ego drove 25.3 % of its route in 6.0 s.");
+  // At 8 m/s all the time, which is its target speed: the time limit ended it.
+  EXPECT_EQ(story[1].rfind("Nothing stopped the ego.", 0), 0u) << story[1];
   // At 6 s the centers are 49 m and 22 m apart. Outlines: 49 - 2.25 - 0.9 and 22 - 2.25 - 0.9.
-  EXPECT_EQ(story[1],
-            "bg_1 was the only CBV and came as near as 49.57 m between the outlines, at 6.00 s.");
   EXPECT_EQ(story[2],
+            "bg_1 was the only CBV and came as near as 49.57 m between the outlines, at 6.00 s.");
+  EXPECT_EQ(story[3],
             "bg_2 and the ego touched at 2.00 s, the first of 2 contacts of the ego; the ego "
             "was at fault in 1 of them.");
 }
 
 TEST(SessionStory, SaysWhenThereWasNoCbvAndNoContact) {
   const std::vector<std::string> story = storyUntil(20);
-  ASSERT_EQ(story.size(), 3u);
-  EXPECT_EQ(story[1], "No vehicle was selected as CBV.");
-  EXPECT_EQ(story[2], "No vehicle touched the ego.");
+  ASSERT_EQ(story.size(), 4u);
+  EXPECT_EQ(story[2], "No vehicle was selected as CBV.");
+  EXPECT_EQ(story[3], "No vehicle touched the ego.");
 }
 
 TEST(SessionStory, SaysWhenNothingHappened) {

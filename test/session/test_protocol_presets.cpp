@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the four protocols differ in, by their sources.
+/// What the protocols differ in: ours, and four by their sources.
 struct Expected {
   const char* preset;
   double time_limit;
@@ -25,13 +25,14 @@ struct Expected {
 };
 
 constexpr Expected kExpected[] = {
+    {"any_length", 60.0, 20.0, 60.0, 20, false, "factors"},
     {"bench2drive", 4000 * 0.05, 0.0, 60.0, 20, false, "factors"},
     {"leaderboard_2_0", 300.0, 10.0, 180.0, 4, true, "factors"},
     {"leaderboard_2_1", 300.0, 10.0, 180.0, 4, true, "charges"},
     {"rift_dev10", 40.0, 0.0, 3.0, 20, false, "factors"},
 };
 
-TEST(ProtocolPresets, AreTheFourProtocols) {
+TEST(ProtocolPresets, AreTheFiveProtocols) {
   std::vector<std::string> names;
   for (const Expected& expected : kExpected) {
     names.emplace_back(expected.preset);
@@ -87,8 +88,20 @@ class ProtocolOfAScenario : public testing::Test {
   SessionRequest request_;
 };
 
-TEST_F(ProtocolOfAScenario, IsRiftsWithoutAKey) {
-  EXPECT_EQ(core::dumpOptions(resolved("")), core::dumpOptions(loadProtocol("rift_dev10")));
+TEST_F(ProtocolOfAScenario, FitsARouteOfAnyLengthWithoutAKey) {
+  EXPECT_EQ(core::dumpOptions(resolved("")), core::dumpOptions(loadProtocol("any_length")));
+}
+
+TEST_F(ProtocolOfAScenario, IsRiftsForARouteOfBench2Drive) {
+  request_ = {};
+  request_.bench2drive = "routes.xml";
+  request_.route = "1";
+  request_.network = "roundabout";
+  EXPECT_EQ(core::dumpOptions(resolveRequest(request_).protocol),
+            core::dumpOptions(loadProtocol("rift_dev10")));
+  request_.set = {"protocol.preset=any_length"};
+  EXPECT_EQ(core::dumpOptions(resolveRequest(request_).protocol),
+            core::dumpOptions(loadProtocol("any_length")));
 }
 
 TEST_F(ProtocolOfAScenario, LiesBelowItsOwnKeys) {

@@ -39,6 +39,26 @@ std::string withoutGeneratedComment(std::string text) {
   return text;
 }
 
+[[noreturn]] void failWithoutRoads(const std::string& subject) {
+  throw core::InputError(
+      subject +
+      ": holds no road for cars; expected a part of a map with streets that cars "
+      "may use and that are connected");
+}
+
+/// Runs netconvert, and says in plain words when nothing is left of the roads.
+void convertRoads(const std::vector<std::string>& arguments, const std::string& subject) {
+  try {
+    runNetconvert(arguments, subject);
+  } catch (const core::InputError& error) {
+    const std::string text = error.what();
+    for (const char* sign : {"No nodes loaded", "No edges loaded"}) {
+      if (text.find(sign) != std::string::npos) failWithoutRoads(subject);
+    }
+    throw;
+  }
+}
+
 /// Text of the SUMO network that netconvert makes of `source`; `format` is its option for the
 /// source, `types` the file of the type map that goes with it.
 std::string convert(const fs::path& source, const std::string& format, const std::string& types,
@@ -58,9 +78,11 @@ std::string convert(const fs::path& source, const std::string& format, const std
                                         "never"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const std::string subject = "network '" + source.string() + "'";
-  runNetconvert(arguments, subject);
+  convertRoads(arguments, subject);
   if (!fs::exists(converted)) throw core::InputError(subject + ": netconvert wrote no network");
-  return withoutGeneratedComment(core::readFile(converted, "converted network"));
+  std::string text = withoutGeneratedComment(core::readFile(converted, "converted network"));
+  if (text.find("<lane ") == std::string::npos) failWithoutRoads(subject);
+  return text;
 }
 
 /// Part of the cache key: raise the number when the importer gives another result for the same

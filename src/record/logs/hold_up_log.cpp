@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "record/logs/hold_up_log.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+#include "session/scenario_review.h"
+
+namespace cdiff::record {
+namespace {
+
+using traffic::SessionStatus;
+using traffic::Vehicle;
+
+constexpr double kAround = 50.0;      ///< of the ego: the traffic around it [m]
+constexpr double kMovingSpeed = 0.1;  ///< of a vehicle that moves [m/s]
+constexpr double kSample = 1.0;       ///< between two looks at what the ego waits for [s]
+constexpr double kShort = 1.0;        ///< a shorter standstill explains nothing [s]
+constexpr double kEndRounding = 1e-6;
+
+/// "1.5 s".
+std::string secondsText(double seconds) { return core::formatFixed(seconds, 1) + " s"; }
+
+std::string atJunction(const std::string& junction) {
+  return junction.empty() ? "" : " at junction " + junction;
+}
+
+/// What a vehicle other than the ego does, as the end of a sentence that starts with its id.
+std::string waitText(const Wait& wait) {
+  switch (wait.reason) {
+    case Wait::For::kVehicle:
+      return wait.junction.empty()
+                 ? "stands behind " + wait.obstacle
+                 : "stands" + atJunction(wait.junction) + ", blocked by " + wait.obstacle;
+    case Wait::For::kLight:
+      return "waits for light " + wait.obstacle + atJunction(wait.junction);
+    case Wait::For::kStopLine:
+      return "waits at the stop line" + atJunction(wait.junction);
+    case Wait::For::kNothing:
+      break;
+  }
+  return "stands" + atJunction(wait.junction) + ", its way free as far as traffic and lights show";
+}
+
+/// Where the ego stood, as the end of "The ego stood 3.0 s".
+std::string placeText(const Wait& wait, const std::string& planner) {
+  switch (wait.reason) {
+    case Wait::For::kVehicle:
+      return (wait.junction.empty() ? " behind " : atJunction(wait.junction) + ", blocked by ") +
+             wait.obstacle;
+    case Wait::For::kLight:
+      return " for light " + wait.obstacle + atJunction(wait.junction);
+    case Wait::For::kStopLine:
+      return " at the stop line" + atJunction(wait.junction);
+    case Wait::For::kNothing:
+      break;
+  }
+  return atJunction(wait.junction) + " with nothing in its way: its own planner, " + planner +
+         ", held it";
+}
+
+/// The vehicles from the head of the ego's queue on, and what each waits for.
+std::string headText(const WaitChain& chain) {
+  constexpr std::size_t kShown = 3;
+  const std::size_t queue = chain.queue().size();
+  const std::size_t first = std::max<std::size_t>(1, queue);
+  std::string text;
+  for (std::size_t i = first; i < std::min(chain.waits.size(), first + kShown); ++i) {
+    const bool head = i == queue && queue > 1;
+    text += "; " + (head ? "head of the queue of " + std::to_string(queue) + ": " : "") +
+            chain.waits[i].vehicle + " " + waitText(chain.waits[i]);
+  }
+  if (chain.ring) text += "; they wait for each other in a ring";
+  return text;
+}
+
+}  // namespace
+
+HoldUpLog::HoldUpLog(const session::SessionSetup& setup) : setup_(setup) {}
+
+void HoldUpLog::observe(const traffic::TrafficSnapshot& snapshot) {
+  for (const Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kCbv) cbvs_.insert(vehicle.id);
+  }
+  const Vehicle* ego = snapshot.ego();
+  if (ego == nullptr) return;
+  noteMotion(snapshot, *ego);
+  const bool stands = ego->state.speed < setup_.options().protocol.blocked_speed;
+  if (!stands) standing_since_.reset();
+  if (stands && !standing_since_) standing_since_ = snapshot.time;
+  if (stands) stood_ += setup_.options().simulation_step;
+  const bool ends =
+      snapshot.status == SessionStatus::kBlocked || snapshot.status == SessionStatus::kTimedOut;
+  const double phase = std::fmod(snapshot.time + kEndRounding, kSample);
+  if (!ends && phase >= setup_.options().simulation_step) return;
+  const WaitChain chain = waitChain(snapshot, setup_.network(), setup_.egoRoute());
+  if (stands) {
+    const HoldUp now = standstill(snapshot, chain);
+    if (!longest_ || now.seconds >= longest_->seconds) longest_ = now;
+  } else {
+    noteSlowness(*ego, chain);
+  }
+  if (ends) conclude(snapshot, chain);
+}
+
+void HoldUpLog::noteMotion(const traffic::TrafficSnapshot& snapshot, const Vehicle& ego) {
+  company_ = false;
+  bool moves = false;
+  for (const Vehicle& other : snapshot.vehicles) {
+    const bool near = (other.state.position - ego.state.position).norm() < kAround;
+    if (other.id == ego.id || !near || traffic::onDifferentLevels(other, ego)) continue;
+    company_ = true;
+    moves = moves || other.state.speed >= kMovingSpeed;
+  }
+  if (moves) traffic_still_since_.reset();
+  if (!moves && !traffic_still_since_) traffic_still_since_ = snapshot.time;
+}
+
+void HoldUpLog::noteSlowness(const Vehicle& ego, const WaitChain& chain) {
+  const map::Route& route = setup_.egoRoute();
+  const double place = route.path().project(ego.state.position).arc_length;
+  const double target = std::min(setup_.options().target_speed, route.speedLimitAt(place));
+  if (ego.state.speed >= 0.5 * target) return;
+  slow_ += kSample;
+  const bool behind = !chain.waits.empty() && chain.waits[0].reason == Wait::For::kVehicle;
+  if (behind) slow_behind_[chain.waits[0].obstacle] += kSample;
+}
+
+HoldUp HoldUpLog::standstill(const traffic::TrafficSnapshot& snapshot,
+                             const WaitChain& chain) const {
+  HoldUp hold_up;
+  hold_up.begin = *standing_since_;
+  hold_up.seconds = snapshot.time - *standing_since_;
+  hold_up.chain = chain;
+  if (company_)
+    hold_up.traffic_still = snapshot.time - traffic_still_since_.value_or(snapshot.time);
+  std::set<std::string> members;
+  for (const Wait& wait : chain.waits) members.insert({wait.vehicle, wait.obstacle});
+  for (const std::string& id : members) {
+    if (cbvs_.count(id) != 0) hold_up.cbvs.push_back(id);
+  }
+  return hold_up;
+}
+
+void HoldUpLog::conclude(const traffic::TrafficSnapshot& snapshot, const WaitChain& chain) {
+  const bool now = standing_since_ && (snapshot.status == SessionStatus::kBlocked ||
+                                       snapshot.time - *standing_since_ >= kShort);
+  HoldUp result;
+  if (now)
+    result = standstill(snapshot, chain);
+  else if (longest_ && longest_->seconds >= kShort)
+    result = *longest_;
+  result.at_end = now;
+  result.stood = stood_;
+  result.slow = slow_;
+  for (const auto& [id, seconds] : slow_behind_) {
+    if (seconds <= result.slow_behind_seconds) continue;
+    result.slow_behind = id;
+    result.slow_behind_seconds = seconds;
+  }
+  found_ = result;
+}
+
+namespace {
+
+std::string standstillText(const HoldUp& hold_up, const session::SessionSetup& setup) {
+  const WaitChain& chain = hold_up.chain;
+  std::string text = "The ego stood " + secondsText(hold_up.seconds) +
+                     (hold_up.at_end ? "" : " from " + secondsText(hold_up.begin) + " on") +
+                     placeText(chain.waits.front(), setup.options().ego_planner) + headText(chain);
+  if (hold_up.traffic_still && *hold_up.traffic_still >= kShort)
+    text += "; the traffic around had not moved for " + secondsText(*hold_up.traffic_still);
+  if (chain.waits.front().reason == Wait::For::kVehicle) {
+    text += hold_up.cbvs.empty() ? "; no CBV had a part in it"
+                                 : "; CBV with a part in it: " + core::joinText(hold_up.cbvs, ", ");
+  }
+  return text + ".";
+}
+
+/// Of a session that timed out.
+std::string timeText(const HoldUp& hold_up, const session::SessionSetup& setup) {
+  const map::Route& route = setup.egoRoute();
+  std::string text = "It stood " + secondsText(hold_up.stood) + " in all";
+  if (hold_up.slow >= kShort) {
+    text += " and drove slower than half its target speed for " + secondsText(hold_up.slow);
+    if (!hold_up.slow_behind.empty()) {
+      text +=
+          ", " + secondsText(hold_up.slow_behind_seconds) + " of it behind " + hold_up.slow_behind;
+    }
+  }
+  return text + "; its route takes " + secondsText(session::drivingTime(setup.options(), route)) +
+         " at target speed.";
+}
+
+}  // namespace
+
+std::string holdUpText(const HoldUp& hold_up, const session::SessionSetup& setup,
+                       SessionStatus status) {
+  const bool stood = !hold_up.chain.waits.empty();
+  std::string text = stood ? standstillText(hold_up, setup) : "";
+  if (status != SessionStatus::kTimedOut) return text;
+  if (!stood) text = "Nothing stopped the ego.";
+  return text + " " + timeText(hold_up, setup);
+}
+
+}  // namespace cdiff::record

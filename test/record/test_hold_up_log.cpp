@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// The ego on the street of record/crossing_streets.h: a tick is 0.05 s, and what it waits for is
+// looked at each second and at the end.
+#include "record/logs/hold_up_log.h"
+
+#include <gtest/gtest.h>
+
+#include "record/crossing_streets.h"
+
+namespace cdiff::record {
+namespace {
+
+using traffic::SessionStatus;
+using traffic::VehicleRole;
+
+class HoldUps : public testing::Test {
+ protected:
+  /// The ego at x = 50 m, a vehicle that stands 10 m ahead of it and one far behind.
+  traffic::TrafficSnapshot snapshot(std::uint64_t tick, double ego_speed, double other_speed) const {
+    traffic::TrafficSnapshot now = test::snapshotWithEgo(tick, {50.0, 0.0, 0.0, ego_speed});
+    now.vehicles.push_back(test::vehicle("ahead", {60.0}, role_));
+    now.vehicles.back().lane_id = "west_0";
+    now.vehicles.push_back(test::vehicle("behind", {20.0, 0.0, 0.0, other_speed}));
+    return now;
+  }
+  /// Drives for a second, then stands until `last` while the one behind drives up to tick 60.
+  const std::optional<HoldUp>& play(std::uint64_t last, SessionStatus status) {
+    for (std::uint64_t tick = 0; tick <= last; ++tick) {
+      traffic::TrafficSnapshot now = snapshot(tick, tick < 20 ? 8.0 : 0.0, tick <= 60 ? 5.0 : 0.0);
+      if (tick == last) now.status = status;
+      log_.observe(now);
+    }
+    return log_.found();
+  }
+  std::string text(SessionStatus status) const {
+    return holdUpText(*log_.found(), streets_.setup(), status);
+  }
+  void expectIn(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nin\n" << text;
+  }
+
+  VehicleRole role_ = VehicleRole::kBackground;
+  test::CrossingSetup streets_;
+  HoldUpLog log_{streets_.setup()};
+};
+
+TEST_F(HoldUps, OfABlockedEgoIsWhoStandsAhead) {
+  const std::optional<HoldUp>& found = play(100, SessionStatus::kBlocked);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->begin, 1.0, 1e-9);    // tick 20
+  EXPECT_NEAR(found->seconds, 4.0, 1e-9);  // to tick 100
+  EXPECT_TRUE(found->at_end);
+  ASSERT_EQ(found->chain.waits.size(), 2U);
+  EXPECT_EQ(found->chain.waits[0].obstacle, "ahead");
+  EXPECT_NEAR(found->traffic_still.value_or(-1.0), 1.95, 1e-9);  // since tick 61
+  EXPECT_TRUE(found->cbvs.empty());
+  const std::string sentence = text(SessionStatus::kBlocked);
+  for (const char* part : {"stood 4.0 s behind ahead", "had not moved for", "no CBV had a part"})
+    expectIn(sentence, part);
+}
+
+TEST_F(HoldUps, NameACbvOfTheQueue) {
+  role_ = VehicleRole::kCbv;
+  ASSERT_TRUE(play(100, SessionStatus::kBlocked));
+  EXPECT_EQ(log_.found()->cbvs, std::vector<std::string>{"ahead"});
+  expectIn(text(SessionStatus::kBlocked), "CBV with a part in it: ahead");
+}
+
+TEST_F(HoldUps, AreNoneOfASessionThatEndsOtherwise) {
+  EXPECT_FALSE(play(100, SessionStatus::kCompleted));
+}
+
+TEST_F(HoldUps, OfATimeOutAreTheLongestStandstillAndTheTime) {
+  play(100, SessionStatus::kRunning);  // stands for 4 s
+  for (std::uint64_t tick = 101; tick <= 200; ++tick) {
+    traffic::TrafficSnapshot now = snapshot(tick, 2.0, 5.0);  // then creeps behind the same
+    if (tick == 200) now.status = SessionStatus::kTimedOut;
+    log_.observe(now);
+  }
+  ASSERT_TRUE(log_.found());
+  EXPECT_FALSE(log_.found()->at_end);
+  EXPECT_NEAR(log_.found()->seconds, 4.0, 1e-9);
+  EXPECT_NEAR(log_.found()->stood, 81 * 0.05, 1e-9);  // ticks 20 to 100
+  EXPECT_NEAR(log_.found()->slow, 5.0, 1e-9);         // ticks 120, 140, ... 200
+  EXPECT_EQ(log_.found()->slow_behind, "ahead");
+  const std::string sentence = text(SessionStatus::kTimedOut);
+  for (const char* part : {"from 1.0 s on behind ahead", "5.0 s of it behind ahead"})
+    expectIn(sentence, part);
+}
+
+TEST_F(HoldUps, WithAFreeRoadAreThePlannersOwn) {
+  for (std::uint64_t tick = 0; tick <= 60; ++tick) {
+    traffic::TrafficSnapshot now = test::snapshotWithEgo(tick, {50.0});
+    if (tick == 60) now.status = SessionStatus::kBlocked;
+    log_.observe(now);
+  }
+  ASSERT_TRUE(log_.found());
+  EXPECT_FALSE(log_.found()->traffic_still);
+  expectIn(text(SessionStatus::kBlocked), "its own planner, pdm_lite, held it");
+}
+
+TEST_F(HoldUps, OfATimeOutWithoutAStandstillAreTheTimeAlone) {
+  for (std::uint64_t tick = 0; tick <= 40; ++tick) {
+    traffic::TrafficSnapshot now = test::snapshotWithEgo(tick, {50.0, 0.0, 0.0, 8.0});
+    if (tick == 40) now.status = SessionStatus::kTimedOut;
+    log_.observe(now);
+  }
+  ASSERT_TRUE(log_.found());
+  EXPECT_TRUE(log_.found()->chain.waits.empty());
+  expectIn(text(SessionStatus::kTimedOut), "Nothing stopped the ego.");
+}
+
+}  // namespace
+}  // namespace cdiff::record
