@@ -186,7 +186,7 @@ void addNewCommand(CLI::App& program, int& exit_code) {
       "new", "Write a scenario that runs at once: network, route, traffic, protocol and rules");
   command->add_option("name", arguments->name, "Writes NAME.yaml, in a folder where one is given")
       ->required();
-  auto* source = command->add_option_group("roads", "Exactly one of these:");
+  auto* source = command->add_option_group("roads");
   source->add_option("--network", arguments->network,
                      "*.net.xml, *.xodr, *.osm, or a shipped network");
   source->add_option("--osm", arguments->osm, "An OpenStreetMap file (*.osm)");

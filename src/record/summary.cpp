@@ -88,7 +88,7 @@ Json holdUpObject(const SessionResult& result) {
           {"cbvs", found->cbvs},
           {"stood_seconds", found->stood},
           {"slow_seconds", found->slow},
-          {"slow_behind", found->slow_behind.empty() ? Json(nullptr) : Json(found->slow_behind)}};
+          {"held_behind", found->held_behind.empty() ? Json(nullptr) : Json(found->held_behind)}};
 }
 
 /// What guidance did to the plans of CBVs, by objective; null without guidance.

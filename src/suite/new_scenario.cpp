@@ -30,8 +30,8 @@ std::string edgesText(const SuggestedRoute& route) {
 std::string othersText(const std::vector<SuggestedRoute>& others) {
   std::string text;
   for (const SuggestedRoute& other : others) {
-    text += "  # edges: " + edgesText(other) + "  # " + routeText(other) + "\n";
-    text += "  #   with start_offset: " + core::formatNumber(other.start_offset) +
+    text += "  # " + routeText(other) + ": edges: " + edgesText(other) +
+            ", start_offset: " + core::formatNumber(other.start_offset) +
             ", end_offset: " + core::formatNumber(other.end_offset) + "\n";
   }
   return text.empty() ? "" : "  # Others that this network offers:\n" + text;

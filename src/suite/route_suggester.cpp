@@ -53,15 +53,16 @@ class Suggester {
   }
 
   std::vector<SuggestedRoute> throughJunctions(const RouteEnds& ends) const {
-    std::set<std::pair<int, int>> links;
+    Paths paths;
     for (int from = 0; from < count(); ++from) {
-      for (const EdgeGraph::Link& link : edges_.links(from)) {
-        const bool starts = ends.from.empty() || edges_.id(from) == ends.from;
-        const bool stops = ends.to.empty() || edges_.id(link.to) == ends.to;
-        if (usable(link) && starts && stops) links.emplace(from, link.to);
-      }
+      if (ends.from.empty() || edges_.id(from) == ends.from) addPaths({from}, paths);
     }
-    return ranked(thinned(links), ends);
+    if (!ends.to.empty()) {
+      const int last = edges_.find(ends.to);
+      for (auto path = paths.begin(); path != paths.end();)
+        path = path->back() == last ? std::next(path) : paths.erase(path);
+    }
+    return ranked(thinned(paths), ends);
   }
 
   std::optional<SuggestedRoute> between(const RouteEnds& ends) const {
@@ -108,6 +109,7 @@ class Suggester {
     int edge = simulation::kNoEdge;
     double turn = 0.0;  ///< [rad]
   };
+  using Paths = std::set<std::vector<int>>;
   struct Ranked {
     double worth = 0.0;
     SuggestedRoute route;
@@ -123,26 +125,41 @@ class Suggester {
     return link.routable && link.turn < kMostTurn;
   }
 
+  /// Ways on from a path of edges: through one junction, and on through short edges, as those of a
+  /// roundabout are.
+  void addPaths(const std::vector<int>& path, Paths& paths) const {
+    constexpr double kShortEdge = 50.0;  // [m]
+    constexpr std::size_t kLongest = 5;  // edges
+    constexpr std::size_t kMostPaths = 20000;
+    for (const EdgeGraph::Link& link : edges_.links(path.back())) {
+      const bool again = std::find(path.begin(), path.end(), link.to) != path.end();
+      if (!usable(link) || again || paths.size() >= kMostPaths) continue;
+      std::vector<int> longer = path;
+      longer.push_back(link.to);
+      paths.insert(longer);
+      if (edges_.length(link.to) < kShortEdge && longer.size() < kLongest) addPaths(longer, paths);
+    }
+  }
+
   /// At most so many, spread over the network.
-  static std::vector<std::pair<int, int>> thinned(const std::set<std::pair<int, int>>& all) {
+  static std::vector<std::vector<int>> thinned(const Paths& all) {
     constexpr std::size_t kMost = 400;
     const std::size_t stride = all.size() / kMost + 1;
-    std::vector<std::pair<int, int>> kept;
+    std::vector<std::vector<int>> kept;
     std::size_t number = 0;
-    for (const auto& link : all) {
-      if (number++ % stride == 0) kept.push_back(link);
+    for (const std::vector<int>& path : all) {
+      if (number++ % stride == 0) kept.push_back(path);
     }
     return kept;
   }
 
-  std::vector<SuggestedRoute> ranked(const std::vector<std::pair<int, int>>& links,
+  std::vector<SuggestedRoute> ranked(const std::vector<std::vector<int>>& paths,
                                      const RouteEnds& ends) const {
     std::vector<Ranked> found;
     std::set<std::vector<std::string>> seen;
-    for (const auto& [from, to] : links) {
-      std::vector<int> edges = {from, to};
+    for (std::vector<int> edges : paths) {
       if (ends.from.empty()) extendBack(edges);
-      if (ends.to.empty() && edges_.length(to) < kLeadIn) edges_.extend(edges, kLeadIn);
+      if (ends.to.empty() && edges_.length(edges.back()) < kLeadIn) edges_.extend(edges, kLeadIn);
       const auto route = described(edges_.ids(edges), true);
       if (route && seen.insert(route->edges).second)
         found.push_back({worthOf(*route, driven(*route)), *route});
@@ -228,8 +245,17 @@ void requireEdge(const map::RoadNetwork& network, const std::string& option,
     throw InputError(option + " '" + edge + "': no lane of this edge is for cars");
 }
 
-void limit(std::vector<SuggestedRoute>& routes, std::size_t count) {
-  if (routes.size() > count) routes.resize(count);
+/// The best, with no more than a third of one maneuver as long as there are others.
+std::vector<SuggestedRoute> mixed(const std::vector<SuggestedRoute>& routes, std::size_t count) {
+  const std::size_t share = (count + 2) / 3;
+  std::map<std::string, std::size_t> taken;
+  std::vector<SuggestedRoute> chosen;
+  std::vector<SuggestedRoute> spare;
+  for (const SuggestedRoute& route : routes)
+    (taken[route.manoeuvre]++ < share ? chosen : spare).push_back(route);
+  chosen.insert(chosen.end(), spare.begin(), spare.end());
+  if (chosen.size() > count) chosen.resize(count);
+  return chosen;
 }
 
 std::string endsText(const RouteEnds& ends) {
@@ -261,8 +287,7 @@ std::vector<SuggestedRoute> suggestRoutes(const map::LaneGraph& graph, const Rou
                      std::to_string(network.edgeIds().size()) +
                      " edges has a lane that a passenger car may use at 2 m/s or more");
   }
-  limit(routes, count);
-  return routes;
+  return mixed(routes, count);
 }
 
 std::string routeText(const SuggestedRoute& route) {

@@ -137,8 +137,8 @@ TEST_F(NewCommand, ValidatePrintsOneGroupAndMarksWhatDiffers) {
   expectOutput("  density: 18  # default: 30\n");
   expectOutput("  warm_up: 30\n");
   EXPECT_EQ(output().find("protocol:"), std::string::npos) << output();
-  EXPECT_EQ(cdiff({"validate", "crossing_left_turn", "--fast", "--group", "trafic"}), 3);
-  expectOutput("no group 'trafic'; did you mean 'traffic'?");
+  EXPECT_EQ(cdiff({"validate", "crossing_left_turn", "--fast", "--group", "traffik"}), 3);
+  expectOutput("no group 'traffik'; did you mean 'traffic'?");
 }
 
 }  // namespace

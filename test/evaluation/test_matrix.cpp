@@ -61,7 +61,8 @@ TEST(Matrix, CallsAScenarioByItsName) {
   ASSERT_EQ(plan.size(), 2U);
   EXPECT_EQ(plan[0].factors.at("scenario"), "my_left");
   EXPECT_EQ(plan[1].factors.at("scenario"), "arterial_exit");
-  std::ofstream(file) << "name: arterial_exit\nnetwork: roundabout\nroute: {edges: [a]}\n";
+  fs::copy_file(file, folder.path() / "copy.yaml");
+  matrix.scenarios = {file, (folder.path() / "copy.yaml").string()};
   expectIn("a name of its own", errorOf(matrix));
 }
 

@@ -91,6 +91,7 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                    "real_time_factor",
                                    "trace_sha256",
                                    "ego",
+                                   "hold_up",
                                    "cbv",
                                    "guidance",
                                    "guidance_trust_region_share",

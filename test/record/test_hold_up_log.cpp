@@ -2,11 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 // The ego on the street of record/crossing_streets.h: a tick is 0.05 s, and what it waits for is
 // looked at each second and at the end.
-#include "record/logs/hold_up_log.h"
-
 #include <gtest/gtest.h>
 
 #include "record/crossing_streets.h"
+#include "record/logs/hold_up_log.h"
 
 namespace cdiff::record {
 namespace {
@@ -17,7 +16,8 @@ using traffic::VehicleRole;
 class HoldUps : public testing::Test {
  protected:
   /// The ego at x = 50 m, a vehicle that stands 10 m ahead of it and one far behind.
-  traffic::TrafficSnapshot snapshot(std::uint64_t tick, double ego_speed, double other_speed) const {
+  traffic::TrafficSnapshot snapshot(std::uint64_t tick, double ego_speed,
+                                    double other_speed) const {
     traffic::TrafficSnapshot now = test::snapshotWithEgo(tick, {50.0, 0.0, 0.0, ego_speed});
     now.vehicles.push_back(test::vehicle("ahead", {60.0}, role_));
     now.vehicles.back().lane_id = "west_0";
@@ -83,9 +83,11 @@ TEST_F(HoldUps, OfATimeOutAreTheLongestStandstillAndTheTime) {
   EXPECT_NEAR(log_.found()->seconds, 4.0, 1e-9);
   EXPECT_NEAR(log_.found()->stood, 81 * 0.05, 1e-9);  // ticks 20 to 100
   EXPECT_NEAR(log_.found()->slow, 5.0, 1e-9);         // ticks 120, 140, ... 200
-  EXPECT_EQ(log_.found()->slow_behind, "ahead");
+  EXPECT_EQ(log_.found()->held_behind, "ahead");
+  // Before it at the seconds 1 to 5, when it stood, and 6 to 10.
+  EXPECT_NEAR(log_.found()->held_behind_seconds, 10.0, 1e-9);
   const std::string sentence = text(SessionStatus::kTimedOut);
-  for (const char* part : {"from 1.0 s on behind ahead", "5.0 s of it behind ahead"})
+  for (const char* part : {"from 1.0 s on behind ahead", "for 10.0 s of this ahead was before it"})
     expectIn(sentence, part);
 }
 

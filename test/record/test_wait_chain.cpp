@@ -2,11 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 // A crossing at x = 85 to 115 m: the ego's street along x (y = 0), another along y (x = 100 m). All
 // boxes are 4.5 x 1.8 m; the ego's front is 2.25 m ahead of its center.
-#include "record/logs/wait_chain.h"
-
 #include <gtest/gtest.h>
 
 #include "record/crossing_streets.h"
+#include "record/logs/wait_chain.h"
 
 namespace cdiff::record {
 namespace {
@@ -108,6 +107,16 @@ TEST_F(WaitChains, AVehicleAcrossTheRouteAndOffTheLanesIsInTheWay) {
   expectWait(chain().waits.at(0), "ego", For::kVehicle, "askew", "");
   expectWait(chain().waits.at(1), "askew", For::kNothing, "", "");
   snapshot_.vehicles[1].state.elevation = 5.0;  // on a bridge
+  expectWait(chain().waits.at(0), "ego", For::kNothing, "", "");
+}
+
+// The route ends at x = 195 m.
+TEST_F(WaitChains, AVehicleBeyondTheGoalIsInTheWay) {
+  put(188.0);
+  snapshot_.vehicles[0].lane_id = "east_0";
+  add("after", {203.0, 0.0}, "east_0");
+  expectWait(chain().waits.at(0), "ego", For::kVehicle, "after", "");
+  snapshot_.vehicles[1].state.position.y() = 3.5;
   expectWait(chain().waits.at(0), "ego", For::kNothing, "", "");
 }
 

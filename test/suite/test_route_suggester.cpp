@@ -34,7 +34,7 @@ TEST_F(GridRoutes, CanBeDrivenAndMeetOtherStreams) {
     EXPECT_NEAR(driven.length(), route.length, 0.06);
     EXPECT_GE(route.length, 150.0) << "80 m before the junction, 80 m after it";
     EXPECT_LE(route.length, 250.0);
-    EXPECT_GE(route.conflicts, 3) << "the other arms of a crossing";
+    EXPECT_GE(route.conflicts, 2) << "other arms of a crossing: three, two for a right turn";
   }
   EXPECT_EQ(routes.front().manoeuvre, "left") << "of equals, the one across the oncoming stream";
 }

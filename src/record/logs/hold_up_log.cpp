@@ -99,9 +99,8 @@ void HoldUpLog::observe(const traffic::TrafficSnapshot& snapshot) {
   if (stands) {
     const HoldUp now = standstill(snapshot, chain);
     if (!longest_ || now.seconds >= longest_->seconds) longest_ = now;
-  } else {
-    noteSlowness(*ego, chain);
   }
+  noteSlowness(*ego, stands, chain);
   if (ends) conclude(snapshot, chain);
 }
 
@@ -118,14 +117,14 @@ void HoldUpLog::noteMotion(const traffic::TrafficSnapshot& snapshot, const Vehic
   if (!moves && !traffic_still_since_) traffic_still_since_ = snapshot.time;
 }
 
-void HoldUpLog::noteSlowness(const Vehicle& ego, const WaitChain& chain) {
+void HoldUpLog::noteSlowness(const Vehicle& ego, bool stands, const WaitChain& chain) {
   const map::Route& route = setup_.egoRoute();
   const double place = route.path().project(ego.state.position).arc_length;
   const double target = std::min(setup_.options().target_speed, route.speedLimitAt(place));
   if (ego.state.speed >= 0.5 * target) return;
-  slow_ += kSample;
+  if (!stands) slow_ += kSample;
   const bool behind = !chain.waits.empty() && chain.waits[0].reason == Wait::For::kVehicle;
-  if (behind) slow_behind_[chain.waits[0].obstacle] += kSample;
+  if (behind) held_behind_[chain.waits[0].obstacle] += kSample;
 }
 
 HoldUp HoldUpLog::standstill(const traffic::TrafficSnapshot& snapshot,
@@ -145,20 +144,19 @@ HoldUp HoldUpLog::standstill(const traffic::TrafficSnapshot& snapshot,
 }
 
 void HoldUpLog::conclude(const traffic::TrafficSnapshot& snapshot, const WaitChain& chain) {
-  const bool now = standing_since_ && (snapshot.status == SessionStatus::kBlocked ||
-                                       snapshot.time - *standing_since_ >= kShort);
   HoldUp result;
-  if (now)
+  if (standing_since_ && snapshot.status == SessionStatus::kBlocked)
     result = standstill(snapshot, chain);
   else if (longest_ && longest_->seconds >= kShort)
     result = *longest_;
-  result.at_end = now;
+  result.at_end =
+      standing_since_ && !result.chain.waits.empty() && result.begin == *standing_since_;
   result.stood = stood_;
   result.slow = slow_;
-  for (const auto& [id, seconds] : slow_behind_) {
-    if (seconds <= result.slow_behind_seconds) continue;
-    result.slow_behind = id;
-    result.slow_behind_seconds = seconds;
+  for (const auto& [id, seconds] : held_behind_) {
+    if (seconds <= result.held_behind_seconds) continue;
+    result.held_behind = id;
+    result.held_behind_seconds = seconds;
   }
   found_ = result;
 }
@@ -183,12 +181,11 @@ std::string standstillText(const HoldUp& hold_up, const session::SessionSetup& s
 std::string timeText(const HoldUp& hold_up, const session::SessionSetup& setup) {
   const map::Route& route = setup.egoRoute();
   std::string text = "It stood " + secondsText(hold_up.stood) + " in all";
-  if (hold_up.slow >= kShort) {
+  if (hold_up.slow >= kShort)
     text += " and drove slower than half its target speed for " + secondsText(hold_up.slow);
-    if (!hold_up.slow_behind.empty()) {
-      text +=
-          ", " + secondsText(hold_up.slow_behind_seconds) + " of it behind " + hold_up.slow_behind;
-    }
+  if (!hold_up.held_behind.empty()) {
+    text += "; for " + secondsText(hold_up.held_behind_seconds) + " of this " +
+            hold_up.held_behind + " was before it";
   }
   return text + "; its route takes " + secondsText(session::drivingTime(setup.options(), route)) +
          " at target speed.";

@@ -20,8 +20,8 @@ struct HoldUp {
   double seconds = 0.0;     ///< how long the ego stood there
   double stood = 0.0;       ///< how long it stood in the whole session
   double slow = 0.0;        ///< how long it drove slower than half its target speed
-  std::string slow_behind;  ///< the vehicle that was before it for most of `slow`; may be empty
-  double slow_behind_seconds = 0.0;
+  std::string held_behind;  ///< the vehicle that was before it for most of both; may be empty
+  double held_behind_seconds = 0.0;
   bool at_end = false;                  ///< the ego still stood when the session ended
   WaitChain chain;                      ///< at the end of the standstill; empty without one
   std::optional<double> traffic_still;  ///< how long nothing within 50 m of the ego had moved;
@@ -43,7 +43,7 @@ class HoldUpLog {
 
  private:
   void noteMotion(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& ego);
-  void noteSlowness(const traffic::Vehicle& ego, const WaitChain& chain);
+  void noteSlowness(const traffic::Vehicle& ego, bool stands, const WaitChain& chain);
   HoldUp standstill(const traffic::TrafficSnapshot& snapshot, const WaitChain& chain) const;
   void conclude(const traffic::TrafficSnapshot& snapshot, const WaitChain& chain);
 
@@ -53,7 +53,7 @@ class HoldUpLog {
   bool company_ = false;  ///< a vehicle was near the ego at the last tick
   double stood_ = 0.0;
   double slow_ = 0.0;
-  std::map<std::string, double> slow_behind_;
+  std::map<std::string, double> held_behind_;
   std::set<std::string> cbvs_;
   std::optional<HoldUp> longest_;
   std::optional<HoldUp> found_;

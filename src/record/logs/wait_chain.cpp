@@ -107,12 +107,27 @@ class WaitSearch {
       const bool far = (other.state.position - ego.state.position).norm() > reach;
       if (other.id == ego.id || far || traffic::onDifferentLevels(ego, other)) continue;
       for (const Eigen::Vector2d& point : outlineOf(other)) {
-        const auto place = route.path().project(point, front, front + kAhead);
-        const bool before_it = place.arc_length > front + 1e-6 || inFront(ego, point);
-        if (before_it && place.distance < side) nearest.take(other, place.arc_length - front);
+        const WayPlace place = placeOnWay(route.path(), point, front);
+        const bool ahead = place.ahead > 1e-6 || inFront(ego, point);
+        if (ahead && place.ahead < kAhead && place.beside < side) nearest.take(other, place.ahead);
       }
     }
     return nearest.vehicle;
+  }
+
+  /// A point relative to a way that goes straight on beyond its end.
+  struct WayPlace {
+    double ahead = 0.0;   ///< along the way from `front` [m]
+    double beside = 0.0;  ///< distance from the way [m]
+  };
+  static WayPlace placeOnWay(const geometry::Polyline& path, const Eigen::Vector2d& point,
+                             double front) {
+    const auto place = path.project(point, front, front + kAhead);
+    const geometry::Pose2d end = path.extendedPoseAt(path.length());
+    const Eigen::Vector2d beyond = end.toBody(point);
+    if (path.length() - front > kAhead || beyond.x() <= 0.0)
+      return {place.arc_length - front, place.distance};
+    return {path.length() - front + beyond.x(), std::abs(beyond.y())};
   }
 
   static bool inFront(const Vehicle& vehicle, const Eigen::Vector2d& point) {
