@@ -282,7 +282,7 @@ Verdict judge(const session::ScenarioOptions& options, SessionStatus status,
 
 Blame blameOf(const metrics::EgoContact& contact, bool excuses_unavoidable) {
   if (!contact.ego_at_fault) return Blame::kNone;
-  return excuses_unavoidable && !contact.avoidable ? Blame::kExcused : Blame::kFault;
+  return excuses_unavoidable && !contact.braking_avoids ? Blame::kExcused : Blame::kFault;
 }
 
 std::string faultText(const session::ScenarioOptions& options,
