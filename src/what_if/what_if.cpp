@@ -85,7 +85,7 @@ class Inquiry {
     const double step = setup_.options().simulation_step;
     Answer answer{question_,
                   driver_.choice().label(),
-                  static_cast<double>(asked.tick) * step,
+                  std::round(static_cast<double>(asked.tick) * step * 1e9) / 1e9,
                   std::nullopt,
                   recorded_.course,
                   {open(asked, 0.0), std::nullopt},

@@ -73,7 +73,7 @@ TEST(EgoRanking, FewestContactsPerKilometerAreFirst) {
 TEST(EgoRanking, TheReferenceFamilyMustBeInOrder) {
   std::vector<EgoRun> runs;
   add("careful", 0, runs);
-  add("careful_half_second_late", 2, runs);
+  add("careful_half_second_late", 3, runs);
   add("careful_second_late", 1, runs);
   add("constant_speed", 9, runs);
   const EgoRanking ranking = rankEgos(runs).front();

@@ -227,8 +227,10 @@ EgoFigures figuresOf(const std::string& ego, const Runs& runs, RouteBootstrap& b
   const std::set<std::string> scenarios = scenariosOf(runs);
   const auto interval = [&](double EgoRun::*exposure, double sum) {
     if (sum <= 0.0) return Interval();
-    return rateInterval(figures.contacts, sum,
-                        bootstrap.valueInterval(sumsOf(runs, exposure, scenarios)));
+    std::optional<Interval> by_routes;
+    if (showsIntervals(scenarios.size()))
+      by_routes = bootstrap.valueInterval(sumsOf(runs, exposure, scenarios));
+    return rateInterval(figures.contacts, sum, by_routes);
   };
   figures.per_km_interval = interval(&EgoRun::kilometers, figures.kilometers);
   figures.per_minute_interval = interval(&EgoRun::minutes, figures.minutes);
@@ -287,7 +289,8 @@ void separate(const std::map<std::string, Runs>& egos, RouteBootstrap& bootstrap
   const auto high_rate = pooledValue(high);
   if (!low_rate || !high_rate) return;
   ranking.separation = *high_rate - *low_rate;
-  ranking.separation_interval = bootstrap.differenceInterval(low, high);
+  if (showsIntervals(shared.size()))
+    ranking.separation_interval = bootstrap.differenceInterval(low, high);
   ranking.area_under_curve = areaUnderCurve(careful->second, constant->second);
 }
 

@@ -65,7 +65,7 @@ struct EgoFigures {
   std::size_t contacts = 0;
   double per_km = 0.0;
   double per_minute = 0.0;
-  Interval per_km_interval;      ///< Poisson, and wider where the bootstrap by routes is
+  Interval per_km_interval;      ///< Poisson; from kLeastRoutes on wider where the bootstrap is
   Interval per_minute_interval;  ///< likewise
   std::map<ContactKind, std::size_t> kinds;
   std::map<ContactKind, const EgoRun*> worst;   ///< with the fastest impact of that kind
@@ -89,7 +89,7 @@ struct EgoRanking {
   std::optional<double> odd_even;
   /// Rate of the ego with constant speed minus that of the careful driver [1/km], where both are.
   std::optional<double> separation;
-  std::optional<Interval> separation_interval;  ///< bootstrap by routes
+  std::optional<Interval> separation_interval;  ///< bootstrap by routes; from kLeastRoutes on
   /// Probability that a session of the former has more contacts than one of the latter.
   std::optional<double> area_under_curve;
   std::vector<std::string> remarks;  ///< on the order of the reference family

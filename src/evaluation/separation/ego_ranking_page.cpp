@@ -89,7 +89,7 @@ page::Panel barsOf(const EgoRanking& ranking) {
 
 page::PanelSheet sheetOf(const EgoRanking& ranking) {
   page::PanelSheet sheet;
-  sheet.title = ranking.setting;
+  sheet.title = "Fewest contacts first";
   sheet.rows.push_back({barsOf(ranking)});
   for (std::size_t i = 0; i < ranking.egos.size(); ++i)
     sheet.notes.push_back(std::to_string(i + 1) + ". " + ranking.egos[i].ego + ": " +
@@ -193,7 +193,8 @@ std::string rankingPage(const std::string& name, const std::vector<EgoRanking>& 
       "Ego ranking", name,
       page::pageNote(
           "Contacts of the ego with anyone, over the km that it drove; brackets are 95 % "
-          "intervals: exact Poisson, or wider where routes differ. Kinds of contact and "
+          "intervals: exact Poisson, from five routes on wider where routes "
+          "differ. Kinds of contact and "
           "worst cases: the fastest impact of each kind."));
   for (const EgoRanking& ranking : rankings) html += settingSection(ranking);
   return page::pageDocument("Ego ranking – " + name, {&page::kPanelSheetStyle, &kBatchPageStyle},
