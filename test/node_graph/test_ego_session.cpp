@@ -232,6 +232,18 @@ TEST_F(EgoSession, AGoodEndIsNoDeath) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
+TEST_F(EgoSession, NeitherIsAFailedVerdictNorTheEndOfAReplay) {
+  session_.launch("record:=true set:=\"protocol.time_limit=1\"");
+  EXPECT_LT(session_.endAfter(60.0), 60.0);
+  EXPECT_EQ(session_.exitCode(), "1\n") << session_.log();
+  EXPECT_EQ(session_.log().find("has died"), std::string::npos) << session_.log();
+  session_.start("exec roslaunch -p " + std::to_string(session_.port()) +
+                 " e2e_cdiff replay.launch rate:=0 bag:=results/session.bag results:=again");
+  EXPECT_LT(session_.endAfter(60.0), 60.0);
+  EXPECT_EQ(core::readFile(session_.folder() / "again/exit_code", "exit code"), "1\n");
+  EXPECT_EQ(session_.log().find("has died"), std::string::npos) << session_.log();
+}
+
 TEST_F(EgoSession, PythonFindsThePedalMapBesideTheMessages) {
   session_.start(
       "/usr/bin/python3 -B -c 'from e2e_cdiff.msg import AckermannCommand; from "
@@ -239,8 +251,7 @@ TEST_F(EgoSession, PythonFindsThePedalMapBesideTheMessages) {
       "import pedals_for; print(round(pedals_for(6.0, -4.0)[1], 3))' >pedals");
   EXPECT_LT(session_.endAfter(30.0), 30.0);
   // Half of full braking, which is capped at 8 m/s^2.
-  EXPECT_EQ(core::readFile(session_.folder() / "pedals", "pedals"), "0.5\n")
-      << session_.log();
+  EXPECT_EQ(core::readFile(session_.folder() / "pedals", "pedals"), "0.5\n") << session_.log();
 }
 
 TEST_F(EgoSession, NoArgumentIsListedAsRequiredButTheBagOfAReplay) {

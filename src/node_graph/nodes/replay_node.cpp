@@ -234,7 +234,10 @@ int ReplayNode::finish() {
   for (const std::string& finding : session_.findings())
     ROS_WARN("bag '%s': %s", bag_.c_str(), finding.c_str());
   if (!failed_ && (stop_.raised() || !ros::ok())) return core::ExitCode::kInterrupted;
-  if (!failed_ && session_.findings().empty()) return core::ExitCode::kPassed;
+  if (!failed_ && session_.findings().empty()) {
+    endLaunch(stop_);
+    return core::ExitCode::kPassed;
+  }
   writeExitCode(results_, core::ExitCode::kRunTimeError);
   return core::ExitCode::kRunTimeError;
 }
@@ -243,9 +246,7 @@ int runReplay(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
     requireKnownLaunchArguments();
-    const int exit_code = ReplayNode(parameters, stop).run();
-    if (exit_code == core::ExitCode::kPassed) endLaunch(stop);
-    return exit_code;
+    return ReplayNode(parameters, stop).run();
   } catch (const core::InputError&) {
     const std::string given = parameters.text("results");
     writeRefusal(given.empty() ? fs::path() : fs::path(parameters.text("folder")) / given);

@@ -81,7 +81,9 @@ int TrafficSimulatorNode::run() {
   runTicks();
   waitForResult();
   reserve_.reset();
-  return exitCode();
+  const int exit_code = exitCode();
+  if (exit_code == core::ExitCode::kPassed) endLaunch(stop_);  // the others wait for our end
+  return exit_code;
 }
 
 bool TrafficSimulatorNode::startWorld() {
@@ -283,9 +285,7 @@ int runTrafficSimulator(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
     requireKnownLaunchArguments();
-    const int exit_code = TrafficSimulatorNode(parameters, stop).run();
-    if (exit_code == core::ExitCode::kPassed) endLaunch(stop);
-    return exit_code;
+    return TrafficSimulatorNode(parameters, stop).run();
   } catch (const core::InputError&) {
     writeRefusal(parameters.text("results"));
     noteRefusal();
