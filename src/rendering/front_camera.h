@@ -20,6 +20,8 @@ class FrontCamera {
   /// are distinguished from it by id.
   traffic::CameraImage render(const traffic::TrafficSnapshot& snapshot,
                               const traffic::Vehicle& vehicle);
+  /// As RigRenderer::setBodyColors.
+  void setBodyColors(BodyColors colors) { renderer_.setBodyColors(colors); }
   const CameraOptions& options() const { return options_; }
 
  private:

@@ -24,6 +24,12 @@ enum class SceneClass : std::uint8_t {
 /// Whether labels are rendered beside the picture.
 enum class Labels { kNone, kClassesAndInstances };
 
+/// What the paint of vehicles says.
+enum class BodyColors {
+  kById,   ///< nothing: a hash of the id chooses it, as in every image that a planner gets
+  kByRole  ///< who it is, as in every picture for people: ego red, CBVs purple, the others blue
+};
+
 /// What one camera saw, and where asked for what each pixel shows (row-major from the top left, as
 /// many as pixels; empty where not asked for).
 struct RenderedView {

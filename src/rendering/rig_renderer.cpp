@@ -49,6 +49,7 @@ struct RigRenderer::Parts {
   std::vector<Canvas> canvases;
   std::vector<View> views;
   std::vector<VisibleVehicle> vehicles;
+  BodyColors colors = BodyColors::kById;
 };
 
 void RigRenderer::Parts::look(const traffic::TrafficSnapshot& snapshot,
@@ -64,7 +65,7 @@ void RigRenderer::Parts::look(const traffic::TrafficSnapshot& snapshot,
     const Bound bound = boundOf(other);
     const auto sees = [&](const View& view) { return view.maySee(bound.center, bound.radius); };
     if (std::any_of(views.begin(), views.end(), sees))
-      vehicles.push_back({bound, bodyOf(other, static_cast<std::uint16_t>(i + 1))});
+      vehicles.push_back({bound, bodyOf(other, static_cast<std::uint16_t>(i + 1), colors)});
   }
 }
 
@@ -116,6 +117,8 @@ std::vector<RenderedView> RigRenderer::render(const traffic::TrafficSnapshot& sn
   }
   return views;
 }
+
+void RigRenderer::setBodyColors(BodyColors colors) { parts_->colors = colors; }
 
 const CameraRig& RigRenderer::rig() const { return parts_->rig; }
 

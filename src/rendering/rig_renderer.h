@@ -34,6 +34,9 @@ class RigRenderer {
   std::vector<RenderedView> render(const traffic::TrafficSnapshot& snapshot,
                                    const traffic::Vehicle& vehicle, Labels labels = Labels::kNone);
 
+  /// kById until it is called.
+  void setBodyColors(BodyColors colors);
+
   const CameraRig& rig() const;
 
  private:

@@ -20,10 +20,18 @@ constexpr Color kHeadlight = rgb(255, 250, 214);
 constexpr Color kPalette[] = {rgb(206, 208, 212), rgb(60, 104, 170), rgb(150, 154, 160),
                               rgb(172, 140, 90),  rgb(52, 128, 110), rgb(226, 226, 222),
                               rgb(108, 84, 130),  rgb(70, 78, 92)};
+constexpr Color kEgoRed = rgb(198, 40, 40);
+constexpr Color kCbvPurple = rgb(123, 31, 162);
+constexpr Color kBackgroundBlue = rgb(31, 111, 196);
 /// Light from above and a little from +x of the map; its part along y is 0, so that a scene
 /// mirrored in y looks the same.
 constexpr double kLightX = 0.35;
 constexpr double kLightZ = 0.75;
+
+Color colorOf(traffic::VehicleRole role) {
+  if (role == traffic::VehicleRole::kEgo) return kEgoRed;
+  return role == traffic::VehicleRole::kCbv ? kCbvPurple : kBackgroundBlue;
+}
 
 /// A block whose upper rectangle may be smaller; x forward, y left of the vehicle's center, z above
 /// the road [m].
@@ -220,16 +228,18 @@ bool brakeLightsOn(const traffic::Vehicle& vehicle) {
   return pedal || vehicle.acceleration < -0.5 || vehicle.state.speed < 0.1;
 }
 
-Color bodyColor(const std::string& id) {
+Color bodyColor(const traffic::Vehicle& vehicle, BodyColors colors) {
+  if (colors == BodyColors::kByRole) return colorOf(vehicle.role);
   std::uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char letter : id) hash = (hash ^ static_cast<unsigned char>(letter)) * 16777619u;
+  for (const char letter : vehicle.id)
+    hash = (hash ^ static_cast<unsigned char>(letter)) * 16777619u;
   return kPalette[(hash >> 8) % (sizeof(kPalette) / sizeof(kPalette[0]))];
 }
 
-VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance) {
+VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance, BodyColors colors) {
   const traffic::VehicleDimensions& size = vehicle.dimensions;
   Painter painter(vehicle, instance);
-  const Color color = bodyColor(vehicle.id);
+  const Color color = bodyColor(vehicle, colors);
   paintShadow(size, painter);
   paintWheels(size, painter);
   const bool car = traffic::classOf(size) == traffic::VehicleClass::kCar;  // with a cabin

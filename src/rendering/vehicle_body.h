@@ -18,8 +18,8 @@ namespace cdiff::rendering {
 /// or stands (below 0.1 m/s).
 bool brakeLightsOn(const traffic::Vehicle& vehicle);
 
-/// Color of the paint, by a hash of the id.
-Color bodyColor(const std::string& id);
+/// Color of the paint.
+Color bodyColor(const traffic::Vehicle& vehicle, BodyColors colors);
 
 /// A face of a vehicle, counter-clockwise seen from outside (map frame [m]).
 struct BodyFace {
@@ -32,7 +32,7 @@ struct BodyFace {
 using VehicleBody = std::vector<BodyFace>;
 
 /// The same in every view. `instance`: its number in the label of its pixels, from 1 on.
-VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance);
+VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance, BodyColors colors);
 
 /// A vehicle that a camera may see: the ball around it and its faces.
 struct VisibleVehicle {

@@ -42,6 +42,19 @@ TEST(FrontViewLog, TakesViewsOfDrivenCbvsAtTheRate) {
   EXPECT_GT(sky[0], sky[2] + 30);
 }
 
+TEST(FrontViewLog, TakesAViewAtAContactOfACbv) {
+  const test::SampleSetup sample = setupWith(2.5);
+  FrontViewLog log(sample.setup);
+  for (std::uint64_t tick = 56; tick <= 60; ++tick) {
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    if (tick == 57) snapshot.contacts = {{"ego", "bg_1"}};
+    if (tick == 59) snapshot.contacts = {{"ego", "bg_2"}};  // no CBV
+    log.observe(snapshot);
+  }
+  ASSERT_EQ(log.views().size(), 2u);
+  EXPECT_EQ(log.views()[1].tick, 57u);
+}
+
 TEST(FrontViewLog, RateZeroKeepsItEmpty) {
   const test::SampleSetup sample = setupWith(0.0);
   EXPECT_TRUE(logOf(sample.setup, 80).views().empty());

@@ -42,6 +42,42 @@ TEST(FrontCamera, ABlindOneShowsMidGrayAtItsTick) {
   ASSERT_EQ(image.rgb.size(), static_cast<std::size_t>(3 * options.width * options.height));
 }
 
+/// Pixels whose red, and whose blue, is more than twice their green or not, as asked for.
+int countTinted(const traffic::CameraImage& image, bool red, bool blue) {
+  int count = 0;
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    const bool is_red = image.rgb[i] > 2 * image.rgb[i + 1];
+    const bool is_blue = image.rgb[i + 2] > 2 * image.rgb[i + 1];
+    count += is_red == red && is_blue == blue;
+  }
+  return count;
+}
+
+/// What a vehicle sees of another 12 m ahead in some role.
+traffic::CameraImage viewOf(traffic::VehicleRole role, BodyColors colors) {
+  FrontCamera camera(levelCamera(), straightRoad());
+  camera.setBodyColors(colors);
+  traffic::Vehicle other = vehicleAt("other", 12.0, 0.0);
+  other.role = role;
+  const traffic::Vehicle viewer = vehicleAt("viewer", 0.0, 0.0);
+  return camera.render(snapshotOf({viewer, other}), viewer);
+}
+
+TEST(FrontCamera, PlannersDoNotSeeWhoAVehicleIs) {
+  const auto seen = [](traffic::VehicleRole role) { return viewOf(role, BodyColors::kById).rgb; };
+  EXPECT_EQ(seen(traffic::VehicleRole::kEgo), seen(traffic::VehicleRole::kBackground));
+  EXPECT_EQ(seen(traffic::VehicleRole::kCbv), seen(traffic::VehicleRole::kBackground));
+}
+
+// A box of 1.8 m x 1.5 m at 9.25 m: about 15 x 13 pixels, a third of it glass, lights and tires.
+TEST(FrontCamera, PeopleSeeWhoAVehicleIs) {
+  constexpr int kLeast = 40;
+  const auto seen = [](traffic::VehicleRole role) { return viewOf(role, BodyColors::kByRole); };
+  EXPECT_GT(countTinted(seen(traffic::VehicleRole::kEgo), true, false), kLeast);
+  EXPECT_GT(countTinted(seen(traffic::VehicleRole::kCbv), true, true), kLeast);
+  EXPECT_EQ(countTinted(seen(traffic::VehicleRole::kBackground), true, true), 0);
+}
+
 TEST(FrontCamera, ProjectsFromTheVehiclesPoseAndElevation) {
   const RigCamera camera = frontCamera(levelCamera());
   traffic::Vehicle vehicle = vehicleAt("ego", 100.0, 50.0, 0.5 * 3.14159265358979323846);

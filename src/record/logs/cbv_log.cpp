@@ -76,6 +76,12 @@ bool canBeDrawn(const traffic::Vehicle& vehicle) {
          std::isfinite(vehicle.state.elevation);
 }
 
+bool touches(const traffic::TrafficSnapshot& snapshot, const std::string& id) {
+  return std::any_of(
+      snapshot.contacts.begin(), snapshot.contacts.end(),
+      [&](const traffic::Contact& contact) { return contact.first == id || contact.second == id; });
+}
+
 }  // namespace
 
 rendering::FrontCamera cameraForPeople(const session::SessionSetup& setup, std::int64_t width,
@@ -84,7 +90,9 @@ rendering::FrontCamera cameraForPeople(const session::SessionSetup& setup, std::
   options.width = width;
   options.height = height;
   options.blind = false;
-  return {options, setup.network()};
+  rendering::FrontCamera front(options, setup.network());
+  front.setBodyColors(rendering::BodyColors::kByRole);
+  return front;
 }
 
 rendering::RigRenderer rigForPeople(const session::SessionSetup& setup, std::int64_t width,
@@ -95,23 +103,33 @@ rendering::RigRenderer rigForPeople(const session::SessionSetup& setup, std::int
     camera.width = width;
     camera.height = height;
   }
-  return {rig, setup.network()};
+  rendering::RigRenderer renderer(rig, setup.network());
+  renderer.setBodyColors(rendering::BodyColors::kByRole);
+  return renderer;
 }
 
 FrontViewLog::FrontViewLog(const session::SessionSetup& setup)
     : setup_(setup), ticks_per_view_(ticksPerView(setup.options())) {}
 
 void FrontViewLog::observe(const traffic::TrafficSnapshot& snapshot) {
-  if (ticks_per_view_ == 0 || snapshot.tick % ticks_per_view_ != 0) return;
+  if (ticks_per_view_ == 0) return;
+  const bool due = snapshot.tick % ticks_per_view_ == 0;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
     if (vehicle.role != traffic::VehicleRole::kCbv || !canBeDrawn(vehicle)) continue;
-    if (!camera_) camera_.emplace(cameraForPeople(setup_, kWidth, kHeight));
-    views_.push_back({snapshot.tick, snapshot.time, vehicle.cbv_slot, vehicle.id,
-                      jpegOf(camera_->render(snapshot, vehicle))});
-    bytes_ += views_.back().jpeg.size();
+    const bool contact = contact_views_ < kMostContactViews && touches(snapshot, vehicle.id);
+    if (due || contact) add(snapshot, vehicle, contact);
   }
   while (bytes_ > kFrontViewBytes) thinOut();
+}
+
+void FrontViewLog::add(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& vehicle,
+                       bool contact) {
+  if (!camera_) camera_.emplace(cameraForPeople(setup_, kWidth, kHeight));
+  views_.push_back({snapshot.tick, snapshot.time, vehicle.cbv_slot, vehicle.id,
+                    jpegOf(camera_->render(snapshot, vehicle)), contact});
+  bytes_ += views_.back().jpeg.size();
+  contact_views_ += contact ? 1U : 0U;
 }
 
 double FrontViewLog::period() const {
@@ -120,7 +138,9 @@ double FrontViewLog::period() const {
 
 void FrontViewLog::thinOut() {
   ticks_per_view_ *= 2;
-  const auto left_out = [&](const FrontView& view) { return view.tick % ticks_per_view_ != 0; };
+  const auto left_out = [&](const FrontView& view) {
+    return !view.contact && view.tick % ticks_per_view_ != 0;
+  };
   views_.erase(std::remove_if(views_.begin(), views_.end(), left_out), views_.end());
   bytes_ = 0;
   for (const FrontView& view : views_) bytes_ += view.jpeg.size();

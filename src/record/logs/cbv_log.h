@@ -43,17 +43,19 @@ struct FrontView {
   int slot = 0;
   std::string vehicle_id;
   std::vector<std::uint8_t> jpeg;
+  bool contact = false;  ///< whether the vehicle touches another at this tick
 };
 
-/// The camera of the planners with `width` x `height` pixels.
+/// The camera of the planners with `width` x `height` pixels, vehicles painted by role.
 rendering::FrontCamera cameraForPeople(const session::SessionSetup& setup, std::int64_t width,
                                        std::int64_t height);
-/// The ego's cameras with `width` x `height` pixels each.
+/// The ego's cameras with `width` x `height` pixels each, likewise.
 rendering::RigRenderer rigForPeople(const session::SessionSetup& setup, std::int64_t width,
                                     std::int64_t height);
 
 /// The front view of each CBV through the session, drawn for people: 320 x 192 pixels, JPEG, evenly
-/// spaced in time, as many as a fixed number of bytes holds.
+/// spaced in time, as many as a fixed number of bytes holds; and at the first kMostContactViews
+/// contacts of CBVs.
 class FrontViewLog {
  public:
   /// `setup` must outlive the log. Its report.front_view_rate 0 keeps the log empty.
@@ -61,15 +63,19 @@ class FrontViewLog {
   /// Every tick in order. Vehicles whose state is not finite are passed over.
   void observe(const traffic::TrafficSnapshot& snapshot);
 
+  static constexpr std::size_t kMostContactViews = 40;
+
   /// By time, then slot.
   const std::vector<FrontView>& views() const { return views_; }
   /// Between views: as asked for, or a power of two of it where they would not fit [s].
   double period() const;
 
  private:
+  void add(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& vehicle, bool contact);
   void thinOut();
 
   const session::SessionSetup& setup_;
+  std::size_t contact_views_ = 0;
   std::uint64_t ticks_per_view_ = 0;              ///< 0: none are wanted
   std::optional<rendering::FrontCamera> camera_;  ///< made when the first CBV is driven
   std::vector<FrontView> views_;
