@@ -81,6 +81,8 @@ class ResultWriter::Record {
       if (trace_) result_.trace_sha256 = trace_->finish();
     });
     attempt([&] { saveFromDeletion(); });
+    for (const record::Approach& approach : approaches_.approaches())
+      timeline_.addEvent(approach.snapshot);
     completeResult();
     attempt([&] { folder_.write("plans.csv", record::plansCsv(plans_)); });
     attempt([&] { folder_.write("report.html", htmlReport(result_)); });

@@ -25,6 +25,24 @@ TEST(Timeline, KeepsAFrameEveryFifthOfASecondAndTheLastTick) {
   EXPECT_EQ(timeline.vehicles()[2].id, "bg_2");
 }
 
+TEST(Timeline, KeepsAFrameOfEachContactAndEvent) {
+  Timeline timeline(0.05);
+  for (std::uint64_t tick = 0; tick <= 8; ++tick) {
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    if (tick == 5) snapshot.contacts = {{"ego", "bg_1"}};
+    timeline.observe(snapshot);
+  }
+  timeline.addEvent(test::sampleSnapshot(2));
+  timeline.addEvent(test::sampleSnapshot(4));  // has a frame already
+  ASSERT_EQ(timeline.frames().size(), 5u);
+  const std::uint64_t ticks[] = {0, 2, 4, 5, 8};
+  const bool events[] = {false, true, true, true, false};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_DOUBLE_EQ(timeline.frames()[i].time, test::sampleSnapshot(ticks[i]).time);
+    EXPECT_EQ(timeline.frames()[i].event, events[i]) << i;
+  }
+}
+
 TEST(Timeline, FindsTheLastContactOfAVehicle) {
   Timeline timeline(0.05);
   traffic::TrafficSnapshot snapshot;

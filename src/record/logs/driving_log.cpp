@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "e2e_cdiff/planning/perception.h"
 #include "metrics/formulas/ttc_2d.h"
@@ -95,12 +97,33 @@ Timeline::Timeline(double simulation_step)
 void Timeline::observe(const traffic::TrafficSnapshot& snapshot) {
   duration_ = snapshot.time;
   const bool last = snapshot.status != traffic::SessionStatus::kRunning;
-  if (last || snapshot.tick % ticks_per_frame_ == 0) addFrame(snapshot);
+  const bool contact = !snapshot.contacts.empty();
+  if (last || contact || snapshot.tick % ticks_per_frame_ == 0) {
+    frames_.push_back(frameOf(snapshot));
+    frames_.back().event = contact;
+  }
   addContacts(snapshot);
   updateGap(snapshot);
 }
 
-void Timeline::addFrame(const traffic::TrafficSnapshot& snapshot) {
+void Timeline::addEvent(const traffic::TrafficSnapshot& snapshot) {
+  const auto next =
+      std::lower_bound(frames_.begin(), frames_.end(), snapshot.time,
+                       [](const TimelineFrame& frame, double time) { return frame.time < time; });
+  if (next != frames_.end() && next->time == snapshot.time) {
+    next->event = true;
+    return;
+  }
+  TimelineFrame frame = frameOf(snapshot);
+  frame.event = true;
+  if (next != frames_.begin()) {
+    frame.gazes = std::prev(next)->gazes;
+    frame.perception = std::prev(next)->perception;
+  }
+  frames_.insert(next, std::move(frame));
+}
+
+TimelineFrame Timeline::frameOf(const traffic::TrafficSnapshot& snapshot) {
   TimelineFrame frame;
   frame.time = snapshot.time;
   frame.poses.reserve(snapshot.vehicles.size());
@@ -111,7 +134,7 @@ void Timeline::addFrame(const traffic::TrafficSnapshot& snapshot) {
     const bool background = vehicle.role == traffic::VehicleRole::kBackground;
     if (!background) addEncounter(pose, snapshot, ego, vehicle);
   }
-  frames_.push_back(std::move(frame));
+  return frame;
 }
 
 void Timeline::observeAttention(const traffic::TrafficSnapshot& snapshot,

@@ -97,6 +97,7 @@ struct TimelineFrame {
   std::vector<TimelinePose> poses;
   std::vector<TimelineAttention> gazes;  ///< the largest of each driver, of planners that say them
   planning::Perception perception;       ///< of the ego's planner; of forecasts the likeliest alone
+  bool event = false;  ///< a contact, or the closest approach of a CBV: thinning keeps it
 };
 
 /// A contact of two vehicles, with its place in the map frame [m].
@@ -115,8 +116,9 @@ struct SmallestGap {
   std::string vehicle_id;
 };
 
-/// The session thinned to what pictures need: poses of all vehicles every 0.2 s (map frame) with
-/// times to collision, contacts, and the smallest gap between ego and CBVs over all ticks.
+/// The session thinned to what pictures need: poses of all vehicles every 0.2 s and at each contact
+/// (map frame) with times to collision, contacts, and the smallest gap between ego and CBVs over
+/// all ticks.
 class Timeline {
  public:
   explicit Timeline(double simulation_step);
@@ -129,6 +131,10 @@ class Timeline {
   void observePerception(const traffic::TrafficSnapshot& snapshot,
                          const std::vector<planning::PlannedAction>& actions);
 
+  /// Adds the frame of an earlier tick that turned out to be an event, after the last `observe`. It
+  /// has the attention and perception of the frame before it.
+  void addEvent(const traffic::TrafficSnapshot& snapshot);
+
   /// In order of appearance.
   const std::vector<TimelineVehicle>& vehicles() const { return vehicles_; }
   const std::vector<TimelineFrame>& frames() const { return frames_; }
@@ -140,7 +146,7 @@ class Timeline {
   double duration() const { return duration_; }
 
  private:
-  void addFrame(const traffic::TrafficSnapshot& snapshot);
+  TimelineFrame frameOf(const traffic::TrafficSnapshot& snapshot);
   void addContacts(const traffic::TrafficSnapshot& snapshot);
   void updateGap(const traffic::TrafficSnapshot& snapshot);
   std::uint32_t indexOf(const traffic::Vehicle& vehicle);
