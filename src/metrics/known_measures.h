@@ -46,6 +46,8 @@ extern const MeasureDefinition kRouteCompletion;
 extern const MeasureDefinition kSpeedShapiroWilk;
 extern const MeasureDefinition kSpeedWasserstein;
 extern const MeasureDefinition kStopSigns;
+extern const MeasureDefinition kTtcCbvMean;
+extern const MeasureDefinition kTtcCbvMinimum;
 extern const MeasureDefinition kTtcMean;
 extern const MeasureDefinition kTtcMinimum;
 

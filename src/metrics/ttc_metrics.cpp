@@ -89,9 +89,7 @@ MetricDescriptor ttc2dMetric() {
           [](const MetricContext&) { return std::make_unique<Ttc2d>(); }};
 }
 
-namespace {
-
-constexpr MeasureDefinition kTtcCbvMean = {
+const MeasureDefinition known::kTtcCbvMean = {
     "ttc_cbv_mean_s",
     "/metrics/ttc_2d_cbv_s/mean",
     "2D-TTC to CBVs, mean",
@@ -101,11 +99,7 @@ constexpr MeasureDefinition kTtcCbvMean = {
     "As ttc_mean_s, of the CBVs alone.",
     "RIFT takes all vehicles.",
 };
-constexpr MeasureDefinition kTtcCbvDeviation = {
-    "ttc_cbv_std_s",     "/metrics/ttc_2d_cbv_s/std", "2D-TTC to CBVs, standard deviation", "s",
-    Direction::kNeither, Subject::kEgoAndOthers,      "As ttc_std_s, of the CBVs alone.",   "",
-};
-constexpr MeasureDefinition kTtcCbvMinimum = {
+const MeasureDefinition known::kTtcCbvMinimum = {
     "ttc_cbv_min_s",
     "/metrics/ttc_2d_cbv_s/min",
     "2D-TTC to CBVs, minimum",
@@ -116,6 +110,13 @@ constexpr MeasureDefinition kTtcCbvMinimum = {
     "",
     3,
     true,
+};
+
+namespace {
+
+constexpr MeasureDefinition kTtcCbvDeviation = {
+    "ttc_cbv_std_s",     "/metrics/ttc_2d_cbv_s/std", "2D-TTC to CBVs, standard deviation", "s",
+    Direction::kNeither, Subject::kEgoAndOthers,      "As ttc_std_s, of the CBVs alone.",   "",
 };
 constexpr MeasureDefinition kTtcCbvDefined = {
     "ttc_cbv_defined_percent",
@@ -144,9 +145,9 @@ class Ttc2dCbv final : public Metric {
     const bool no_cbv = defined_.ticks() == 0;
     const DistributionMeasure times =
         times_.measure(no_cbv ? kNoCbv : "no CBV was on a collision course with the ego");
-    sink.set(kTtcCbvMean, times.mean);
+    sink.set(known::kTtcCbvMean, times.mean);
     sink.set(kTtcCbvDeviation, times.standard_deviation);
-    sink.set(kTtcCbvMinimum, times.minimum);
+    sink.set(known::kTtcCbvMinimum, times.minimum);
     sink.set(kTtcCbvDefined, defined_.measure(kNoCbv));
   }
 
@@ -160,7 +161,7 @@ class Ttc2dCbv final : public Metric {
 MetricDescriptor ttc2dCbvMetric() {
   return {"ttc_2d_cbv",
           "2D time to collision of the ego with CBVs.",
-          {kTtcCbvMean, kTtcCbvDeviation, kTtcCbvMinimum, kTtcCbvDefined},
+          {known::kTtcCbvMean, kTtcCbvDeviation, known::kTtcCbvMinimum, kTtcCbvDefined},
           [](const MetricContext&) { return std::make_unique<Ttc2dCbv>(); }};
 }
 
