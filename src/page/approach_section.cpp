@@ -248,12 +248,13 @@ Markup approachPart(const record::SessionResult& result, const record::Approach&
   const traffic::Vehicle* cbv = approach.snapshot.find(approach.vehicle_id);
   if (ego == nullptr || cbv == nullptr) return {};
   const std::string gap = approach.gap > 0.0
-                              ? core::formatFixed(approach.gap, 2) + " m between the outlines"
+                              ? core::formatFixed(approach.gap, 2) + " m between outlines"
                               : "the outlines overlap";
-  const std::string heading =
-      approach.vehicle_id + " at " + core::formatFixed(approach.time(), 2) + " s: " + gap;
-  const std::string line = "Centers " + core::formatFixed(approach.center_distance, 1) +
-                           " m apart; CBV " + speedText(*cbv) + ", ego " + speedText(*ego);
+  const Markup heading =
+      approach.vehicle_id + Markup(" at ") + timeLink(approach.time()) + " s: " + gap;
+  const std::string line = core::formatFixed(approach.center_distance, 1) +
+                           " m between centers; CBV " + speedText(*cbv) + ", ego " +
+                           speedText(*ego);
   const Markup seen = views(camera, approach, *cbv, "CBV", approach.cbv_image) +
                       views(camera, approach, *ego, "ego", approach.ego_image);
   const Markup content = element("h3", {}, heading) + "\n" +

@@ -53,11 +53,12 @@ Markup banner(const record::SessionResult& result) {
   const session::ScenarioOptions& options = result.setup.options();
   const record::Outcome outcome = result.verdict.outcome;
   Markup content;
-  for (const std::string& reason : result.verdict.reasons) content += element("p", {}, reason);
+  for (const std::string& reason : result.verdict.reasons)
+    content += element("p", {}, linkedTimes(reason));
   if (outcome == record::Outcome::kPassed) content += element("p", {}, metText(result));
   std::string story;
   for (const std::string& sentence : record::sessionStory(result)) story += sentence + " ";
-  content += element("p", {{"class", "story"}}, story);
+  content += element("p", {{"class", "story"}}, linkedTimes(story));
   return pageHeader(options.name,
                     options.mode + " · seed " + std::to_string(options.seed) + " · ego " +
                         options.ego_planner + " · CBV " + options.cbv_planner + " · method " +
@@ -85,13 +86,24 @@ Markup tile(const std::string& name, const std::string& value, const std::string
          "\n";
 }
 
-Markup tile(const metrics::MeasureDefinition& definition,
-            const metrics::SessionMeasures& measures) {
+Markup tile(const metrics::MeasureDefinition& definition, const metrics::SessionMeasures& measures,
+            const std::string& note = "") {
   constexpr int kDecimals = 2;
   const metrics::Measure measure = measures.at(definition);
-  if (!measure.value) return tile(definition.label, "–", "", measure.reason);
+  const std::string more = note.empty() ? "" : "; " + note;
+  if (!measure.value) return tile(definition.label, "–", "", measure.reason + more);
   return tile(definition.label, core::formatFixed(*measure.value, kDecimals), measure.unit,
-              "n = " + std::to_string(measure.n));
+              "n = " + std::to_string(measure.n) + more);
+}
+
+/// A time to collision with CBVs; that with all traffic below it.
+Markup ttcTile(const metrics::MeasureDefinition& with_cbvs,
+               const metrics::MeasureDefinition& with_all,
+               const metrics::SessionMeasures& measures) {
+  const metrics::Measure all = measures.at(with_all);
+  return tile(
+      with_cbvs, measures,
+      "with all traffic " + (all.value ? core::formatFixed(*all.value, 2) + " " + all.unit : "–"));
 }
 
 std::string paceText(const record::SessionResult& result) {
@@ -127,10 +139,12 @@ Markup cbvTiles(const metrics::SessionMeasures& measures) {
 }
 
 Markup tiles(const record::SessionResult& result) {
+  namespace known = metrics::known;
   const metrics::SessionMeasures& measures = result.measures;
   const Markup content =
-      egoTiles(result) + cbvTiles(measures) + tile(metrics::known::kTtcMinimum, measures) +
-      tile(metrics::known::kTtcMean, measures) +
+      egoTiles(result) + cbvTiles(measures) +
+      ttcTile(known::kTtcCbvMinimum, known::kTtcMinimum, measures) +
+      ttcTile(known::kTtcCbvMean, known::kTtcMean, measures) +
       tile("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", paceText(result));
   return element("div", {{"class", "figures"}}, "\n" + content) + "\n";
 }
@@ -139,7 +153,8 @@ Markup planSection(const record::PlanLog& plans) {
   if (plans.empty()) return pageNote("No plan of a CBV was shown.");
   return planTable(plans) +
          pageNote(
-             "Distance between where a decision's plan put the CBV and where it was, 1, 2 and 3 s "
+             "Distance between centers, of where a decision's plan put the CBV and where it was, "
+             "1, 2 and 3 s "
              "later, over all decisions whose plan and drive reach that far. State mismatch: "
              "largest distance between planned positions and what the vehicle dynamics makes of "
              "the planned actions.");
@@ -160,34 +175,35 @@ Markup whatIf(const std::map<std::string, std::string>& answers) {
   return element("div", {{"id", "what-if"}}, list) + "\n";
 }
 
-Markup sections(const record::SessionResult& result, const MapCanvas& canvas) {
-  return pageSection("What happened", stageHtml(result, canvas)) +
-         pageSection("Over time", sessionCharts(result)) +
-         pageSection("Distributions", drivingSection(result)) +
-         pageSection("Closest approach", approachSection(result)) +
-         pageSection("Plans against what was driven", planSection(result.plans)) +
-         pageSection("Guidance", guidanceSection(result)) +
-         pageSection("Rules", ruleTable(result)) +
-         pageSection("Metrics", metricTable(result.measures)) +
-         pageSection("Infractions of the ego", infractionTable(result.measures)) +
-         pageSection("Critical background vehicles", selectionTable(result)) +
-         pageSection("Why others were no CBVs", rejectionTable(result.cbv)) +
-         pageSection("Contacts", contactTable(result) + whatIf({})) +
-         pageSection("Planner latency", latencyTable(result.latencies)) +
-         pageSection("Late answers", lateTable(result.late)) +
-         pageSection("Faults", faultTable(result.faults)) +
-         pageSection("Configuration and versions", configuration(result));
+std::vector<PageSection> sections(const record::SessionResult& result, const MapCanvas& canvas) {
+  return {{"What happened", stageHtml(result, canvas)},
+          {"Over time", sessionCharts(result)},
+          {"Distributions", drivingSection(result)},
+          {"Closest approach", approachSection(result)},
+          {"Plans against what was driven", planSection(result.plans)},
+          {"Guidance", guidanceSection(result)},
+          {"Rules", ruleTable(result)},
+          {"Metrics", metricTables(result.measures)},
+          {"Infractions of the ego", infractionTable(result.measures)},
+          {"Critical background vehicles", selectionTable(result)},
+          {"Why others were no CBVs", rejectionTable(result.cbv)},
+          {"Contacts", contactTable(result) + whatIf({})},
+          {"Planner latency", latencyTable(result.latencies)},
+          {"Late answers", lateTable(result.late)},
+          {"Faults", faultTable(result.faults)},
+          {"Configuration and versions", configuration(result)}};
 }
 
 }  // namespace
 
 std::string htmlReport(const record::SessionResult& result) {
   const MapCanvas canvas(sessionRegion(result));
-  return pageDocument(
-      result.setup.options().name + " – session report", {},
-      banner(result) + lateBanner(result) + tiles(result) + sections(result, canvas),
-      core::jsonElement("playback", playbackJson(result, canvas)) +
-          core::scriptElement(kReportScript));
+  const std::vector<PageSection> parts = sections(result, canvas);
+  return pageDocument(result.setup.options().name + " – session report", {},
+                      banner(result) + lateBanner(result) + tiles(result) + pageContents(parts) +
+                          pageSections(parts),
+                      core::jsonElement("playback", playbackJson(result, canvas)) +
+                          core::scriptElement(kReportScript));
 }
 
 std::optional<std::string> withWhatIf(const std::string& page,

@@ -2,6 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "page/page_parts.h"
 
+#include <cctype>
+#include <cstdlib>
+#include <regex>
+
+#include "core/text.h"
+
 namespace cdiff::page {
 namespace {
 
@@ -11,6 +17,19 @@ const char* signOf(record::Outcome outcome) {
   if (outcome == record::Outcome::kPassed) return "✓";
   if (outcome == record::Outcome::kFailed) return "✗";
   return outcome == record::Outcome::kNotJudged ? "–" : "!";
+}
+
+/// "What happened" is "what-happened": letters and digits of a title, the rest one hyphen.
+std::string idOf(const std::string& title) {
+  std::string id;
+  for (const char letter : title) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (std::isalnum(code) != 0)
+      id += static_cast<char>(std::tolower(code));
+    else if (!id.empty() && id.back() != '-')
+      id += '-';
+  }
+  return id;
 }
 
 /// The attribute class, where there is one.
@@ -40,7 +59,22 @@ Markup pageHeader(const std::string& title, const std::string& line, const Marku
 
 Markup pageSection(const std::string& title, const Markup& content, const std::string& style) {
   const Markup heading = element("h2", {}, title);
-  return element("section", classOf(style), "\n" + heading + "\n" + content) + "\n";
+  Attributes attributes = classOf(style);
+  attributes.emplace_back("id", idOf(title));
+  return element("section", attributes, "\n" + heading + "\n" + content) + "\n";
+}
+
+Markup pageContents(const std::vector<PageSection>& sections) {
+  Markup links;
+  for (const PageSection& section : sections)
+    links += element("a", {{"href", "#" + idOf(section.title)}}, section.title) + "\n";
+  return element("nav", {{"class", "contents"}, {"aria-label", "Contents"}}, "\n" + links) + "\n";
+}
+
+Markup pageSections(const std::vector<PageSection>& sections) {
+  Markup html;
+  for (const PageSection& section : sections) html += pageSection(section.title, section.content);
+  return html;
 }
 
 Markup pageBanner(record::Outcome outcome, const std::string& headline, const Markup& content) {
@@ -52,6 +86,27 @@ Markup pageBanner(record::Outcome outcome, const std::string& headline, const Ma
 }
 
 Markup pageNote(const std::string& text) { return element("p", {{"class", "note"}}, text) + "\n"; }
+
+Markup timeLink(double seconds) {
+  const std::string text = core::formatFixed(seconds, 2);
+  return element("a", {{"class", "time"}, {"href", "#t=" + text}}, text);
+}
+
+Markup linkedTimes(const std::string& text) {
+  static const std::regex kTime("\\bat ([0-9]{1,6}\\.[0-9]{1,2}) s\\b");
+  Markup html;
+  auto from = text.cbegin();
+  for (std::sregex_iterator found(text.begin(), text.end(), kTime), end; found != end; ++found) {
+    const auto at = text.cbegin() + found->position(1);
+    html += std::string(from, at) + timeLink(std::strtod(found->str(1).c_str(), nullptr));
+    from = at + found->length(1);
+  }
+  return html + std::string(from, text.cend());
+}
+
+Markup pageFold(const Markup& summary, const Markup& content, const std::string& style) {
+  return element("details", classOf(style), element("summary", {}, summary) + content) + "\n";
+}
 
 Markup legendItem(const Markup& picture, const std::string& text) {
   const Markup sign = element("svg", {{"viewBox", "0 0 28 14"}, {"aria-hidden", "true"}}, picture);

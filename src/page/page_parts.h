@@ -32,7 +32,17 @@ std::string pageDocument(const std::string& title, const std::vector<const core:
 /// The page's heading, a line in small letters, and what follows them.
 Markup pageHeader(const std::string& title, const std::string& line, const Markup& rest = {});
 
-/// A <section> with a heading; `style`: its class, or none.
+/// A part of a page under a heading of its own.
+struct PageSection {
+  std::string title;
+  Markup content;
+};
+/// Links to sections by their titles.
+Markup pageContents(const std::vector<PageSection>& sections);
+/// All of them, one below another.
+Markup pageSections(const std::vector<PageSection>& sections);
+
+/// A <section> with a heading, its id made of it; `style`: its class, or none.
 Markup pageSection(const std::string& title, const Markup& content, const std::string& style = "");
 
 /// The sign of an outcome and `headline`, in its colors, above `content`.
@@ -40,6 +50,14 @@ Markup pageBanner(record::Outcome outcome, const std::string& headline, const Ma
 
 /// A paragraph in soft color.
 Markup pageNote(const std::string& text);
+
+/// A time of the session [s] that the playback goes to on a click.
+Markup timeLink(double seconds);
+/// A text in which every "at 12.34 s" is such a link.
+Markup linkedTimes(const std::string& text);
+
+/// A word or two that open to more.
+Markup pageFold(const Markup& summary, const Markup& content, const std::string& style = "");
 
 /// A row of a legend: a picture of 28 x 14 pixels, and text.
 Markup legendItem(const Markup& picture, const std::string& text);

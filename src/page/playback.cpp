@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
+#include "page/approach_section.h"
 #include "page/page_parts.h"
 #include "page/pictures/attention.h"
 #include "page/pictures/map_canvas.h"
@@ -26,14 +29,14 @@ std::set<int> slotsOf(const record::SessionResult& result) {
 }
 
 Markup sight(int slot) {
-  const std::string number = std::to_string(slot);
   const Markup content = element("img", {{"width", "320"},
                                          {"height", "192"},
-                                         {"alt", "Front view of the CBV in slot " + number},
+                                         {"alt", "Front view of a CBV"},
                                          core::flag("hidden")}) +
-                         element("p", {{"class", "nothing"}}, "No CBV in slot " + number) +
-                         element("figcaption", {}, "Slot " + number);
-  return element("figure", {{"class", "sight"}, {"data-slot", number}}, content) + "\n";
+                         element("p", {{"class", "nothing"}}, "No CBV now") +
+                         element("figcaption", {}, "");
+  return element("figure", {{"class", "sight"}, {"data-slot", std::to_string(slot)}}, content) +
+         "\n";
 }
 
 /// What the pictures are, and why there are none.
@@ -44,10 +47,11 @@ std::string sightNote(const record::SessionResult& result) {
     return "Front views were not asked for (report.front_view_rate is 0).";
   }
   if (planners::seesImages(options.cbv_planner)) {
-    return "What is ahead of each CBV, in more pixels than its planner gets.";
+    return "What is ahead of each CBV, in more pixels than its planner gets and in this page's "
+           "colors: ego red, CBVs purple. Planners see colors that say nothing.";
   }
-  return "What is ahead of each CBV, drawn for people: its planner " + options.cbv_planner +
-         " sees no images.";
+  return "What is ahead of each CBV, drawn for people (ego red, CBVs purple): its planner " +
+         options.cbv_planner + " sees no images.";
 }
 
 Markup sights(const record::SessionResult& result) {
@@ -64,7 +68,8 @@ Markup sights(const record::SessionResult& result) {
 /// The script fills its rows.
 Markup momentTable() {
   Markup head = element("th", {{"scope", "col"}}, "Now");
-  for (const char* name : {"Speed [m/s]", "Throttle", "Brake", "Steer", "Gap [m]", "2D-TTC [s]"}) {
+  for (const char* name :
+       {"Speed [m/s]", "Throttle", "Brake", "Steer", "Between outlines [m]", "2D-TTC [s]"}) {
     head += element("th", {{"scope", "col"}, {"class", "number"}}, name);
   }
   const Markup rows = element("thead", {}, element("tr", {}, head)) + element("tbody");
@@ -123,11 +128,43 @@ Markup controls() {
          "\n";
 }
 
+/// A moment worth a look, by its time [s].
+using Moments = std::multimap<double, std::string>;
+
+/// Contacts, those of the ego alone where there are too many to list, and each CBV's closest
+/// approach.
+Moments momentsOf(const record::SessionResult& result) {
+  constexpr std::size_t kMostContacts = 12;
+  const auto& contacts = result.timeline.contacts();
+  Moments moments;
+  for (const record::TimelineContact& contact : contacts) {
+    const bool own = contact.first == traffic::kEgoId || contact.second == traffic::kEgoId;
+    if (own || contacts.size() <= kMostContacts)
+      moments.emplace(contact.time, contact.first + " and " + contact.second + " touch");
+  }
+  for (const record::Approach* approach : shownApproaches(result.approaches)) {
+    if (approach->gap > 0.0)
+      moments.emplace(approach->time(), approach->vehicle_id + " is nearest, " +
+                                            core::formatFixed(approach->gap, 2) +
+                                            " m between outlines");
+  }
+  return moments;
+}
+
+Markup momentList(const record::SessionResult& result) {
+  Markup items;
+  for (const auto& [time, what] : momentsOf(result))
+    items += element("span", {{"class", "item"}}, timeLink(time) + " s: " + what) + "\n";
+  if (items.empty()) return items;
+  return element("p", {{"class", "moments"}}, "\n" + items) + "\n";
+}
+
 }  // namespace
 
 Markup stageHtml(const record::SessionResult& result, const MapCanvas& canvas) {
   const Markup map = element("div", {{"class", "map"}}, "\n" + topViewSvg(result, canvas)) + "\n";
-  const Markup left = element("div", {}, "\n" + map + controls() + momentTable()) + "\n";
+  const Markup left =
+      element("div", {}, "\n" + map + momentList(result) + controls() + momentTable()) + "\n";
   return element("div", {{"class", "stage"}}, "\n" + left + sights(result)) + "\n" +
          topViewLegend(canvas, &result.timeline);
 }
@@ -205,6 +242,18 @@ Json viewLists(const record::SessionResult& result) {
   return lists;
 }
 
+/// The latest plan of a decision at `time` or up to a second before; nullptr without one.
+const record::LoggedPlan* planAt(const record::VehiclePlans* vehicle, double time) {
+  constexpr double kLongestAge = 1.0;  // [s]
+  if (vehicle == nullptr) return nullptr;
+  const auto later = std::upper_bound(
+      vehicle->plans.begin(), vehicle->plans.end(), time + kFrameRounding,
+      [](double limit, const record::LoggedPlan& plan) { return limit < plan.time; });
+  if (later == vehicle->plans.begin() || time - std::prev(later)->time > kLongestAge)
+    return nullptr;
+  return &*std::prev(later);
+}
+
 /// The frame that the page shows first: the closest approach, else the last.
 std::size_t firstShown(const Json& times, const record::Timeline& timeline) {
   const auto& gap = timeline.smallestGap();
@@ -252,6 +301,25 @@ Json perceivedTexts(const record::TimelineFrame& frame, const MapCanvas& canvas)
   return texts;
 }
 
+/// Of each CBV in a frame its index and the plan that it follows then, as path data in pixels.
+Json planTexts(const record::TimelineFrame& frame, const record::SessionResult& result,
+               const MapCanvas& canvas) {
+  Json texts = Json::array();
+  for (const record::TimelinePose& pose : frame.poses) {
+    if (pose.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
+    const std::string& id = result.timeline.vehicles()[pose.vehicle].id;
+    const record::LoggedPlan* plan = planAt(result.plans.find(id), frame.time);
+    if (plan == nullptr) continue;
+    Points line = {plan->start.position};
+    for (const record::Waypoint& point : plan->points) {
+      if (point.position.allFinite()) line.push_back(point.position);
+    }
+    texts.push_back(pose.vehicle);
+    texts.push_back(canvas.line(line));
+  }
+  return texts;
+}
+
 void addFrames(Json& data, const record::SessionResult& result, const MapCanvas& canvas) {
   const std::vector<std::size_t> cbv_styles = cbvStyles(result);
   const auto& frames = result.timeline.frames();
@@ -259,10 +327,11 @@ void addFrames(Json& data, const record::SessionResult& result, const MapCanvas&
   const bool gazes = showsAttention(result.timeline);
   const bool perception = showsPerception(result.timeline);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i % stride != 0 && i + 1 != frames.size()) continue;
+    if (i % stride != 0 && !frames[i].event && i + 1 != frames.size()) continue;
     data["times"].push_back(hundredths(frames[i].time));
     data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
     data["moments"].push_back(momentNumbers(frames[i]));
+    data["plans"].push_back(planTexts(frames[i], result, canvas));
     if (gazes) data["gazes"].push_back(attentionNumbers(frames[i]));
     if (perception) data["perceived"].push_back(perceivedTexts(frames[i], canvas));
   }
@@ -276,6 +345,7 @@ std::string playbackJson(const record::SessionResult& result, const MapCanvas& c
                {"times", Json::array()},
                {"frames", Json::array()},
                {"moments", Json::array()},
+               {"plans", Json::array()},
                {"period", result.front_views.period()},
                {"views", viewLists(result)}};
   addVehicles(data, result);

@@ -41,8 +41,7 @@ std::string noteOf(const metrics::Measure& measure) {
   return "against " + measure.target + (measure.reason.empty() ? "" : "; " + measure.reason);
 }
 
-void measureRow(HtmlTable& table, const std::string& name,
-                const metrics::MeasureDefinition& definition,
+void measureRow(HtmlTable& table, const Markup& name, const metrics::MeasureDefinition& definition,
                 const metrics::SessionMeasures& measures) {
   const metrics::Measure measure = measures.at(definition);
   table.row(
@@ -56,17 +55,49 @@ void measureRow(HtmlTable& table, const std::string& name,
 Markup ruleTable(const record::SessionResult& result) {
   HtmlTable table({"Rule", "Outcome", "Found"});
   for (const record::Check& check : result.verdict.checks) {
-    table.row({check.name, record::toText(check.outcome), check.text},
+    table.row({check.name, record::toText(check.outcome), linkedTimes(check.text)},
               record::toText(check.outcome));
   }
   return table.html();
 }
 
-Markup metricTable(const metrics::SessionMeasures& measures) {
-  HtmlTable table({"Metric", "#Value", "Unit", "#n", "Note"});
-  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions())
-    measureRow(table, definition.label, definition, measures);
-  return table.html();
+namespace {
+
+/// The heading under which a measure stands.
+std::string groupOf(const metrics::MeasureDefinition& definition) {
+  const std::vector<std::string> keys = core::splitText(definition.place, '/');
+  if (keys.size() > 1 && keys[0] == "metrics" && keys[1] == "rift_compat")
+    return "By RIFT's definitions";
+  switch (definition.subject) {
+    case metrics::Subject::kEgo:
+      return "The ego";
+    case metrics::Subject::kCbvs:
+      return "CBVs";
+    case metrics::Subject::kEgoAndOthers:
+      break;
+  }
+  return "The ego and others";
+}
+
+Markup foldedDefinition(const metrics::MeasureDefinition& definition) {
+  const std::string key = std::string(definition.name) + ": ";
+  return pageFold(definition.label, element("p", {}, key + definition.definition), "definition");
+}
+
+}  // namespace
+
+Markup metricTables(const metrics::SessionMeasures& measures) {
+  Markup html = pageNote("A click on a metric opens its definition.");
+  for (const std::string group :
+       {"The ego", "The ego and others", "CBVs", "By RIFT's definitions"}) {
+    HtmlTable table({"Metric", "#Value", "Unit", "#n", "Note"});
+    for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+      if (groupOf(definition) == group)
+        measureRow(table, foldedDefinition(definition), definition, measures);
+    }
+    html += element("h3", {}, group) + "\n" + table.html();
+  }
+  return html;
 }
 
 Markup infractionTable(const metrics::SessionMeasures& measures) {
@@ -84,26 +115,27 @@ Markup selectionTable(const record::SessionResult& result) {
   if (result.cbv.records().empty()) {
     return pageNote("No vehicle was selected as CBV.");
   }
-  HtmlTable table({"Conflict", "Vehicle", "#Slot", "#Selected [s]", "#Score",
-                   "#Ego to conflict [m]", "#CBV to conflict [m]", "#Arrival gap [s]", "Place",
-                   "#Decisions", "#Released [s]", "Why", "#Route driven [%]", "Conflict point"});
+  HtmlTable table({"Vehicle", "#Slot", "#Selected [s]", "#Score",
+                   "#Ego to conflict, along lanes [m]", "#CBV to conflict, along lanes [m]",
+                   "#Arrival gap [s]", "Place", "#Decisions", "#Released [s]", "Why",
+                   "#Route driven [%]", "Conflict point"});
   const double step = result.setup.options().simulation_step;
-  for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
-    const record::CbvRecord& record = result.cbv.records()[i];
+  const auto time = [step](std::uint64_t tick) {
+    return timeLink(static_cast<double>(tick) * step);
+  };
+  for (const record::CbvRecord& record : result.cbv.records()) {
     const cbv::ConflictPoint& conflict = record.conflict_point;
     const bool junction = record::atOrBeyondFirstJunction(conflict, result.setup.egoRoute());
     const std::optional<std::string> other = record::contactPartner(record, result);
-    table.row(
-        {"C" + std::to_string(i + 1), record.vehicle_id, std::to_string(record.slot),
-         fixed(static_cast<double>(record.selected_tick) * step, 2),
-         fixed(record.interaction_score, 3), fixed(conflict.ego_distance, 1),
-         fixed(conflict.cbv_distance, 1), fixed(conflict.arrivalTimeGap(), 2),
-         junction ? "junction or beyond" : "before junction",
-         std::to_string(record.decisions_driven),
-         record.released_tick ? fixed(static_cast<double>(*record.released_tick) * step, 2) : "–",
-         record::releaseText(record.release_reason) + (other ? " (" + *other + ")" : ""),
-         fixed(record.routeCompletionPercent(), 1),
-         record.conflict_point_passed ? "passed" : "not reached"});
+    table.row({record.vehicle_id, std::to_string(record.slot), time(record.selected_tick),
+               fixed(record.interaction_score, 3), fixed(conflict.ego_distance, 1),
+               fixed(conflict.cbv_distance, 1), fixed(conflict.arrivalTimeGap(), 2),
+               junction ? "junction or beyond" : "before junction",
+               std::to_string(record.decisions_driven),
+               record.released_tick ? time(*record.released_tick) : "–",
+               record::releaseText(record.release_reason) + (other ? " (" + *other + ")" : ""),
+               fixed(record.routeCompletionPercent(), 1),
+               record.conflict_point_passed ? "passed" : "not reached"});
   }
   return table.html();
 }
@@ -167,7 +199,7 @@ Markup contactTable(const record::SessionResult& result) {
                    "#Other [m/s]", "Braking avoids it"});
   auto own = result.measures.ego_contacts.begin();  // in the order of `all`
   for (const record::TimelineContact& contact : all) {
-    std::vector<Markup> cells = {fixed(contact.time, 2), contact.first, contact.second};
+    std::vector<Markup> cells = {timeLink(contact.time), contact.first, contact.second};
     const bool ego = own != result.measures.ego_contacts.end() &&
                      (contact.first == own->partner || contact.second == own->partner) &&
                      contact.time == own->seconds;

@@ -14,7 +14,8 @@ namespace cdiff::page {
 // Tables of the HTML report.
 
 core::Markup ruleTable(const record::SessionResult& result);
-core::Markup metricTable(const metrics::SessionMeasures& measures);
+/// All measures in groups, each with its definition folded in.
+core::Markup metricTables(const metrics::SessionMeasures& measures);
 /// The ego's infractions and penalty by the protocol.
 core::Markup infractionTable(const metrics::SessionMeasures& measures);
 core::Markup selectionTable(const record::SessionResult& result);

@@ -55,7 +55,7 @@ inline std::string withoutWallClock(const std::filesystem::path& file) {
   }
   if (name == "runs.csv") return runsWithoutWallClock(text);
   if (name == "junit.xml") return std::regex_replace(text, std::regex(" time=\"[^\"]*\""), "");
-  if (name == "index.html") return without(text, "<section class=\"wall-clock\">", "</section>");
+  if (name == "index.html") return without(text, "<section class=\"wall-clock\"", "</section>");
   if (name == "report.html") {
     const std::string latency = without(text, "<h2>Planner latency</h2>", "</section>");
     return std::regex_replace(latency, std::regex("[0-9.]+ times real time"), "");

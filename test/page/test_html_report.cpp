@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 
 #include "core/file.h"
+#include "metrics/metric_registry.h"
 #include "page/html_report.h"
 #include "planning/perception_sample.h"
 #include "record/logs/cbv_log.h"
@@ -107,8 +108,10 @@ TEST(HtmlReport, ShowsWhatTheCbvSawAndPlanned) {
   const std::string article = between(page, "<article class=\"approach cbv c0\">", "</article>");
   // Ego at (5 + 8 t, -2), CBV at (102, -60 + 6 t): they approach until the end at 6 s, when dx = 49
   // and dy = 22: 53.7 m.
-  EXPECT_NE(article.find("<h3>bg_1 at 6.00 s"), std::string::npos) << article.substr(0, 300);
-  EXPECT_NE(article.find("Centers 53.7 m apart; CBV 6.0 m/s, ego 8.0 m/s"), std::string::npos);
+  EXPECT_NE(article.find("<h3>bg_1 at <a class=\"time\" href=\"#t=6.00\">6.00</a> s"),
+            std::string::npos)
+      << article.substr(0, 300);
+  EXPECT_NE(article.find("53.7 m between centers; CBV 6.0 m/s, ego 8.0 m/s"), std::string::npos);
   EXPECT_EQ(countOf(article, "width=\"640\" height=\"384\""), 2u);  // from the CBV and the ego
   EXPECT_EQ(countOf(article, "width=\"160\" height=\"96\""), 1u);   // only the CBV's planner sees
   EXPECT_NE(article.find(record::pngDataUri(test::redAndBlue(120))), std::string::npos);
@@ -300,7 +303,84 @@ TEST(HtmlReport, ShowsRoadTrailsAndConflict) {
   EXPECT_EQ(countOf(view, "class=\"trail bg\""), 2u);  // bg_2, and bg_1 before its selection
   EXPECT_EQ(countOf(view, "class=\"planned cbv c0\""), 1u);
   EXPECT_EQ(countOf(view, "class=\"conflict\""), 1u);
-  EXPECT_NE(view.find("C1 bg_1"), std::string::npos);
+  EXPECT_NE(view.find(">bg_1</text>"), std::string::npos);
+}
+
+TEST(HtmlReport, CallsAVehicleByOneName) {
+  const std::string page = seenPage();
+  for (const char* other : {"C1 bg_1", ">C1<", "Slot 0", "slot 0"})
+    EXPECT_EQ(page.find(other), std::string::npos) << other;
+}
+
+TEST(HtmlReport, ListsItsContentsAsLinks) {
+  const std::string page = pageOf("crossing");
+  const std::string contents = between(page, "<nav class=\"contents\"", "</nav>");
+  EXPECT_EQ(countOf(contents, "<a href=\"#"), countOf(page, "<section id=\""));
+  EXPECT_NE(contents.find("<a href=\"#what-happened\">What happened</a>"), std::string::npos);
+  EXPECT_EQ(countOf(page, "<section id=\"what-happened\">"), 1u);
+}
+
+/// The page of a session in which bg_1, a CBV, touches the ego at tick 113, between two frames.
+std::string struckPage() {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  for (std::uint64_t tick = 100; tick <= 116; ++tick) {
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    if (tick == 113) snapshot.contacts = {{"ego", "bg_1"}};
+    if (tick > 113) snapshot.vehicles.erase(snapshot.vehicles.begin() + 1);
+    if (tick == 116) snapshot.status = SessionStatus::kTimedOut;
+    session::TickRecord record;
+    record.snapshot = &snapshot;
+    writer.observe(record);
+  }
+  writer.finish(1.0);
+  return core::readFile(scratch.path() / "report.html", "report");
+}
+
+// The struck CBV is gone at the next frame of 0.2 s, so the contact has a frame and a view.
+TEST(HtmlReport, ShowsTheMomentOfAContact) {
+  const std::string page = struckPage();
+  const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
+  EXPECT_EQ(data["times"], nlohmann::json({5.0, 5.2, 5.4, 5.6, 5.65, 5.8}));
+  EXPECT_EQ(data["frames"][4].size(), 18u);  // three vehicles
+  EXPECT_EQ(data["frames"][5].size(), 12u);
+  EXPECT_DOUBLE_EQ(data["views"]["0"].back()[0], 5.65);
+  const std::string moments = between(page, "<p class=\"moments\">", "</p>");
+  EXPECT_NE(moments.find("href=\"#t=5.65\">5.65</a> s: ego and bg_1 touch"), std::string::npos)
+      << moments;
+  const std::string row = between(page, "<section id=\"contacts\">", "</section>");
+  EXPECT_NE(row.find("<a class=\"time\" href=\"#t=5.65\">"), std::string::npos) << row;
+}
+
+TEST(HtmlReport, DrawsThePlanOfEachMoment) {
+  const auto data = nlohmann::json::parse(between(seenPage(), "id=\"playback\">", "</script>"));
+  ASSERT_EQ(data["plans"].size(), data["times"].size());
+  EXPECT_TRUE(data["plans"][0].empty());  // no CBV yet
+  const auto& last = data["plans"].back();
+  ASSERT_EQ(last.size(), 2u);
+  EXPECT_EQ(data["vehicles"][last[0].get<std::size_t>()][0], "bg_1");
+  EXPECT_EQ(last[1].get<std::string>().front(), 'M');
+  EXPECT_EQ(countOf(seenPage(), "<g id=\"plans\">"), 1u);
+}
+
+TEST(HtmlReport, GroupsMetricsAndFoldsTheirDefinitions) {
+  const std::string page = pageOf("crossing");
+  const std::string metrics = between(page, "<section id=\"metrics\">", "</section>");
+  for (const char* group : {"<h3>The ego</h3>", "<h3>CBVs</h3>", "<h3>The ego and others</h3>"})
+    EXPECT_EQ(countOf(metrics, group), 1u) << group;
+  EXPECT_EQ(countOf(metrics, "<details class=\"definition\">"),
+            metrics::measureDefinitions().size());
+  EXPECT_NE(metrics.find("cbv_minimum_distance_m: The smallest distance of centers"),
+            std::string::npos);
+}
+
+TEST(HtmlReport, HeadsWithTheTimeToCollisionToCbvs) {
+  const std::string tiles = between(pageOf("crossing"), "class=\"figures\"", "<nav");
+  const std::size_t to_cbvs = tiles.find(">2D-TTC to CBVs, minimum<");
+  EXPECT_NE(to_cbvs, std::string::npos);
+  EXPECT_EQ(tiles.find(">2D-TTC, minimum<"), std::string::npos);
+  EXPECT_NE(tiles.find("with all traffic ", to_cbvs), std::string::npos);
 }
 
 TEST(HtmlReport, KeepsALongSessionSmall) {

@@ -112,9 +112,9 @@ TEST(OutsideTexts, AMetricOfAPlugInIsShown) {
   const std::string harmless = NamedResult("").textOf("report.html");
   registerNamedMetric();
   const std::string page = NamedResult("").textOf("report.html");
-  EXPECT_TRUE(has(page, "<td>label " + std::string(test::escapedText())));
-  // One row of five cells more.
-  EXPECT_EQ(tagsOf(page).size(), tagsOf(harmless).size() + 12);
+  EXPECT_TRUE(has(page, "<summary>label " + std::string(test::escapedText())));
+  // One row of five cells more, with a definition that unfolds.
+  EXPECT_EQ(tagsOf(page).size(), tagsOf(harmless).size() + 12 + 6);
   EXPECT_EQ(countOf(page, "<script"), 2u);
   EXPECT_TRUE(test::isPlain(page));
 }
@@ -179,9 +179,9 @@ TEST(OutsideTexts, PicturesCutWhatIsTooLong) {
   const NamedResult result(test::longText());
   const std::string page = result.textOf("report.html");
   EXPECT_EQ(tagsOf(page), tagsOf(NamedResult("").textOf("report.html")));
-  // A name in the picture from above has 40 characters: "C1 bg_1", 32 letters and an ellipsis.
+  // A name in the picture from above has 40 characters: "bg_1", 35 letters and an ellipsis.
   const std::string picture = between(page, "id=\"top-view\"", "</svg>");
-  EXPECT_TRUE(has(picture, ">C1 bg_1" + std::string(32, 'W') + "…</text>"));
+  EXPECT_TRUE(has(picture, ">bg_1" + std::string(35, 'W') + "…</text>"));
   for (std::size_t at = page.find("<text"); at != std::string::npos;
        at = page.find("<text", at + 1))
     EXPECT_LT(page.find("</text>", at) - at, 400u);

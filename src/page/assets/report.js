@@ -45,6 +45,28 @@
     view.setAttribute("viewBox", `${center.x - w / 2} ${center.y - h / 2} ${w} ${h}`);
     view.style.setProperty("--zoom", zoom);
   };
+  const nearestGap = function (frame) {
+    const numbers = data.moments[frame];
+    let found = null;
+    for (let i = 0; i < numbers.length; i += 7)
+      if (numbers[i + 1] >= 0 && numbers[i + 5] >= 0 && (found === null || numbers[i + 5] < found[1]))
+        found = [numbers[i], numbers[i + 5]];
+    return found;
+  };
+  // Shows ego and nearest CBV of a frame, the picture at least 60 m wide.
+  const focus = function (frame) {
+    const numbers = data.frames[frame], near = nearestGap(frame), places = [];
+    for (let i = 0; i < numbers.length; i += 6)
+      if (numbers[i + 1] === 0 || (near !== null && numbers[i] === near[0]))
+        places.push({ x: numbers[i + 2] / 10, y: numbers[i + 3] / 10 });
+    if (places.length === 0) return;
+    const middle = (key) => places.reduce((sum, at) => sum + at[key], 0) / places.length;
+    center = { x: middle("x"), y: middle("y") };
+    let apart = 0;
+    for (const at of places) apart = Math.max(apart, Math.hypot(at.x - center.x, at.y - center.y));
+    follow.checked = false;
+    zoomTo(whole.w / Math.max(60 * Number(view.dataset.pixelsPerMeter), 6 * apart));
+  };
   const zoomTo = function (value) { zoom = Math.min(Math.max(value, 1), 16); look(); };
 
   const moveCursors = function (time) {
@@ -105,10 +127,9 @@
       const image = sight.querySelector("img"), nothing = sight.querySelector(".nothing");
       image.hidden = view === null;
       nothing.hidden = view !== null;
-      nothing.textContent = index === null ? `No CBV in slot ${slot}` : "No picture yet";
+      nothing.textContent = index === null ? "No CBV now" : "No picture yet";
       sight.className = "sight " + (index === null ? "" : styleOf(data.frames[frame], index));
-      let text = `Slot ${slot}`;
-      if (index !== null) text += ": " + data.vehicles[index][0];
+      let text = index === null ? "" : data.vehicles[index][0];
       if (view !== null) {
         image.setAttribute("src", "data:image/jpeg;base64," + view[2]);
         text += ` at ${view[0].toFixed(1)} s`;
@@ -133,6 +154,12 @@
       line.style.setProperty("--weight", gazes[i + 2] / 100);
     }
   };
+  const drawPlans = function (frame) {
+    const lines = document.getElementById("plans"), texts = data.plans[frame];
+    lines.replaceChildren();
+    for (let i = 0; i < texts.length; i += 2)
+      svgElement("path", { class: "plan", d: texts[i + 1] }, lines);
+  };
   const drawPerceived = function (frame) {
     const paths = document.getElementById("perceived");
     if (paths === null) return;
@@ -147,6 +174,7 @@
     const numbers = data.frames[frame], seen = new Set();
     drawPerceived(frame);
     drawAttention(frame);
+    drawPlans(frame);
     let text = data.times[frame].toFixed(1) + " s of " + data.times[last].toFixed(1) + " s";
     for (let i = 0; i < numbers.length; i += 6) {
       const index = numbers[i], box = boxOf(index);
@@ -273,10 +301,20 @@
 
   const fromAddress = function () {
     const asked = /^#t=(\d+(?:\.\d+)?)$/.exec(location.hash);
-    if (asked) { stop(); show(frameAt(Number(asked[1]))); }
+    if (asked) {
+      stop();
+      show(frameAt(Number(asked[1])));
+      focus(Number(slider.value));
+    }
     return asked !== null;
   };
   window.addEventListener("hashchange", fromAddress);
+  document.addEventListener("click", function (event) {
+    const link = event.target.closest("a.time");
+    if (link === null) return;
+    if (link.hash === location.hash) fromAddress();
+    view.scrollIntoView({ block: "center" });
+  });
 
   slider.max = last;
   for (const id of ["controls", "sights", "moment"]) {
@@ -284,5 +322,8 @@
     if (part) part.hidden = false;
   }
   layer.replaceChildren();
-  if (!fromAddress()) show(data.start);
+  if (!fromAddress()) {
+    show(data.start);
+    if (nearestGap(data.start) !== null) focus(data.start);
+  }
 })();

@@ -45,7 +45,7 @@ Markup bar(std::size_t index, const record::SessionResult& result, const Rows& r
   const double end =
       record.released_tick ? endOf(record, result) : std::max(begin, endOf(record, result));
   const double x = rows.axes.x(begin);
-  const std::string name = "C" + std::to_string(index + 1) + " " + record.vehicle_id;
+  const std::string& name = record.vehicle_id;
   const std::string tip = name + ", " + core::formatFixed(begin, 2) + " to " +
                           core::formatFixed(end, 2) +
                           " s: " + record::releaseText(record.release_reason);
@@ -75,9 +75,6 @@ Markup contacts(const record::SessionResult& result, const Rows& rows) {
 
 Markup frame(const record::SessionResult& result, const Rows& rows) {
   Markup svg;
-  for (int slot = 0; slot < static_cast<int>(rows.count); ++slot) {
-    svg += chartText("tick end", kChartLeft - 6.0, rows.y(slot) + 4.0, std::to_string(slot));
-  }
   const double step = niceStep(std::max(result.timeline.duration(), 1e-3), 8);
   for (double time = 0.0; time <= result.timeline.duration() + 1e-9; time += step) {
     const bool last = time + step > result.timeline.duration() + 1e-9;
@@ -93,7 +90,7 @@ Markup slotChart(const record::SessionResult& result) {
   const Rows rows = rowsOf(result);
   Markup svg = frame(result, rows);
   for (std::size_t i = 0; i < result.cbv.records().size(); ++i) svg += bar(i, result, rows);
-  return timeChart("CBV of each slot", std::max(result.timeline.duration(), 1e-3), false,
+  return timeChart("Who was CBV", std::max(result.timeline.duration(), 1e-3), false,
                    svg + contacts(result, rows));
 }
 

@@ -200,10 +200,9 @@ Markup conflictPoints(const record::SessionResult& result, const MapCanvas& canv
   std::vector<Eigen::Vector2d> taken;  // places of names
   const auto& route = result.setup.egoRoute().path().points();
   if (!route.empty()) taken.push_back(canvas.toPixels(route.back().head<2>()) + kGoalLabel);
-  for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
-    const record::CbvRecord& record = result.cbv.records()[i];
+  for (const record::CbvRecord& record : result.cbv.records()) {
     const Eigen::Vector2d pixel = canvas.toPixels(record.conflict_point.position.head<2>());
-    const std::string name = "C" + std::to_string(i + 1) + " " + record.vehicle_id;
+    const std::string& name = record.vehicle_id;
     Eigen::Vector2d offset(10.0, -8.0);
     const auto hidden = [&](const Eigen::Vector2d& other) {
       const Eigen::Vector2d between = (other - pixel - offset).cwiseAbs();
@@ -287,13 +286,14 @@ Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) 
       trailPaths(result, canvas, VehicleRole::kCbv) +
       trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
       perceivedSvg(result.timeline, canvas) + attentionSvg(result.timeline, canvas) +
-      finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
-      conflictPoints(result, canvas) + scaleBarSvg(canvas);
+      element("g", {{"id", "plans"}}) + finalBoxes(result, canvas) +
+      contactMarks(result.timeline, canvas) + conflictPoints(result, canvas) + scaleBarSvg(canvas);
   const double magnification = canvas.scale() * vehicleMagnification(canvas);
-  return svgPicture(
-             "The session from above", {canvas.width(), canvas.height()},
-             {{"id", "top-view"}, {"data-magnification", core::formatFixed(magnification, 4)}},
-             content) +
+  return svgPicture("The session from above", {canvas.width(), canvas.height()},
+                    {{"id", "top-view"},
+                     {"data-magnification", core::formatFixed(magnification, 4)},
+                     {"data-pixels-per-meter", core::formatFixed(canvas.scale(), 4)}},
+                    content) +
          "\n";
 }
 
@@ -329,6 +329,7 @@ Markup topViewLegend(const MapCanvas& canvas, const record::Timeline* timeline) 
       legendLine("route", "ego route") + legendLine("trail ego", "driven by the ego") +
       legendLine("trail cbv c0", "driven as CBV") + legendLine("trail bg", "driven by background") +
       legendLine("planned cbv c0", "conflict-aware route") +
+      legendLine("plan", "plan of a CBV at that moment") +
       legendItem(conflict, "conflict point as selected") +
       legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact") +
       (timeline == nullptr ? Markup() : plannerLegend(*timeline)));
