@@ -40,6 +40,7 @@ struct ReportArguments {
   std::string factor;
   std::string baseline;
   std::string csv;
+  bool all = false;
 };
 
 /// Throws InputError for a folder that is not a batch; for a single session it names what to run
@@ -154,7 +155,7 @@ int printComparisons(const ReportArguments& arguments) {
   std::vector<evaluation::Comparison> comparisons = compare(arguments);
   requirePairs(comparisons, arguments);
   evaluation::adjustForNumber(comparisons);
-  std::cout << evaluation::comparisonMarkdown(comparisons);
+  std::cout << evaluation::comparisonMarkdown(comparisons, arguments.all);
   const std::string csv = evaluation::comparisonCsv(comparisons);
   if (arguments.csv.empty()) {
     core::writeOwnFile(fs::path(arguments.folders.back()) / "compare.csv", csv);
@@ -242,6 +243,8 @@ void addReportCommand(CLI::App& program, int& exit_code) {
   command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
   command->add_option("--figure", arguments->measures, "Only this measure; may be repeated")
       ->allow_extra_args(false);
+  command->add_flag("--all", arguments->all,
+                    "Also the measures beside the five headline ones, corrected among themselves");
   command->add_option("--csv", arguments->csv,
                       "CSV file (default: compare.csv in the last folder)");
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });

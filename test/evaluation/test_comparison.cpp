@@ -100,6 +100,31 @@ TEST(Comparison, NamesTheDifferencesThatStay) {
   EXPECT_EQ(text.find("no p of a mean"), std::string::npos) << text;
 }
 
+// Of 11 routes 11 contacts against none: p = 2 / 2^11 = 0.00098, five times that among the headline
+// measures; among 60 measures it would be 0.06.
+TEST(Comparison, CorrectsHeadlineMeasuresAmongThemselves) {
+  RunSet a = contactsOf("A", std::vector<double>(11, 0.0));
+  RunSet b = contactsOf("B", std::vector<double>(11, 1.0));
+  for (RunSet* set : {&a, &b}) {
+    for (RunRecord& record : set->records) {
+      for (const std::string& name : measureNames()) record.measures.emplace(name, 1.0);
+    }
+  }
+  auto comparisons = std::vector{compareRuns(a, b, sharedFactors(a, b), {})};
+  adjustForNumber(comparisons);
+  ASSERT_EQ(comparisons[0].measures.size(), measureNames().size());
+  const MeasureComparison& contacts = comparisons[0].measures.front();
+  EXPECT_EQ(contacts.measure, "cbv_ego_collisions");
+  EXPECT_NEAR(contacts.p_holm, 5.0 * 2.0 / 2048.0, 1e-9);
+  EXPECT_EQ(multiplicityOf(comparisons, true).differences, 5U);
+  const std::string text = comparisonMarkdown(comparisons);
+  EXPECT_NE(text.find("| ego_driving_score |"), std::string::npos) << text;
+  EXPECT_EQ(text.find("ttc_mean_s"), std::string::npos) << text;
+  EXPECT_NE(text.find("further differences: --all shows them"), std::string::npos) << text;
+  EXPECT_NE(comparisonMarkdown(comparisons, true).find("| ttc_mean_s |"), std::string::npos);
+  EXPECT_NE(comparisonCsv(comparisons).find(",headline\n"), std::string::npos);
+}
+
 TEST(Comparison, OfFewRoutesShowsNoIntervalInAnyColumn) {
   // On 2 routes counts, means and differences have intervals; on 1 route counts alone would.
   RunSet a = contactsOf("A", {0, 1});
@@ -288,7 +313,7 @@ TEST(Comparison, WritesTables) {
       << markdown;
   const std::string csv = comparisonCsv(comparisons);
   EXPECT_NE(csv.find("A,\"B, new\",ego_driving_score,mean,2,2,1,15,10,20,bootstrap,,,,,,19,12,26,"
-                     "bootstrap,,,,,,4,2,6,bootstrap,,,,0.5,0.5,0.5\n"),
+                     "bootstrap,,,,,,4,2,6,bootstrap,,,,0.5,0.5,0.5,headline\n"),
             std::string::npos)
       << csv;
 }

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/comparison/comparison_differences.h"
+#include "evaluation/headline_measures.h"
 #include "evaluation/intervals/intervals.h"
 
 namespace cdiff::evaluation {
@@ -167,6 +168,15 @@ MeasureComparison compareMeasure(const std::string& measure, const std::vector<R
   return compared;
 }
 
+/// All measures.
+std::vector<std::string> headlinesFirst() {
+  std::vector<std::string> names = headlineMeasures();
+  for (const std::string& name : measureNames()) {
+    if (!isHeadline(name)) names.push_back(name);
+  }
+  return names;
+}
+
 std::string nearest(const std::string& name, const std::vector<std::string>& known) {
   return "; the nearest is '" + core::nearestName(name, known) +
          "' (all: " + core::joinText(known, ", ") + ")";
@@ -263,8 +273,9 @@ Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::str
   comparison.seeds = countLevels(pairs, "seed");
   comparison.conditions = conditionsText(a.conditions, a.records);
   RouteBootstrap bootstrap;
-  for (const std::string& measure : names.empty() ? measureNames() : names) {
+  for (const std::string& measure : names.empty() ? headlinesFirst() : names) {
     MeasureComparison compared = compareMeasure(measure, pairs, comparison.cluster, bootstrap);
+    compared.headline = names.empty() && isHeadline(measure);
     if (compared.pairs > 0) comparison.measures.push_back(std::move(compared));
   }
   return comparison;
@@ -299,22 +310,26 @@ void checkMeasureNames(const std::vector<std::string>& names) {
 }
 
 void adjustForNumber(std::vector<Comparison>& comparisons) {
-  std::vector<double> p;
-  for (const Comparison& comparison : comparisons) {
-    for (const MeasureComparison& measure : comparison.measures) p.push_back(measure.p);
-  }
-  auto adjusted = holmAdjusted(p);
-  auto next = adjusted.begin();
-  for (Comparison& comparison : comparisons) {
-    for (MeasureComparison& measure : comparison.measures) measure.p_holm = *next++;
+  for (const bool headline : {true, false}) {
+    std::vector<MeasureComparison*> family;
+    for (Comparison& comparison : comparisons) {
+      for (MeasureComparison& measure : comparison.measures) {
+        if (measure.headline == headline) family.push_back(&measure);
+      }
+    }
+    std::vector<double> p;
+    for (const MeasureComparison* measure : family) p.push_back(measure->p);
+    const std::vector<double> adjusted = holmAdjusted(p);
+    for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = adjusted[i];
   }
 }
 
-Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons) {
+Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons, bool headline) {
   constexpr double kLargest = 0.05;
   Multiplicity result;
   for (const Comparison& comparison : comparisons) {
     for (const MeasureComparison& measure : comparison.measures) {
+      if (measure.headline != headline) continue;
       ++result.differences;
       result.apart += measure.p <= kLargest;
       if (measure.p_holm <= kLargest) result.apart_by_holm.push_back(measure.measure);

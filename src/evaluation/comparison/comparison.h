@@ -27,7 +27,10 @@ struct MeasureComparison {
   std::optional<RateComparison> rates;  ///< of counts: exact conditional test and ratio B / A
   double p_exchange = 1.0;              ///< A and B exchanged by routes
   double p = 1.0;  ///< p_exchange; of counts the exact test's, or the larger where over-dispersed
-  double p_holm = 1.0;  ///< p adjusted for the number of comparisons in the report
+  double p_holm = 1.0;  ///< p adjusted for the number of differences of its family
+  /// The family that p_holm corrects for: headline measures (headlineMeasures) among themselves,
+  /// all others among themselves. False where measures were named: these are one family.
+  bool headline = false;
 };
 
 /// Factors that change together with the one compared, each with its levels in A and in B.
@@ -59,8 +62,9 @@ std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b);
 /// mode and method where nothing else sets it.
 Followers followingFactors(const RunSet& a, const RunSet& b, const std::string& factor);
 
-/// Measures of `names`, or all when empty. Runs of one side that agree in all of `paired_by` count
-/// as one by their mean. Throws InputError as requireComparable does.
+/// Measures of `names`; all when empty, the headline measures first and marked. Runs of one side
+/// that agree in all of `paired_by` count as one by their mean. Throws InputError as
+/// requireComparable does.
 Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::string>& paired_by,
                        const std::vector<std::string>& names);
 
@@ -71,16 +75,16 @@ std::vector<Comparison> compareLevels(const RunSet& runs, const std::string& fac
                                       const std::string& baseline,
                                       const std::vector<std::string>& names);
 
-/// Fills in p_holm over all measures of all of them.
+/// Fills in p_holm over all measures of a family in all of them.
 void adjustForNumber(std::vector<Comparison>& comparisons);
 
-/// How many differences the comparisons report, and how many of them are significant.
+/// How many differences of one family the comparisons report, and how many are significant.
 struct Multiplicity {
   std::size_t differences = 0;
   std::size_t apart = 0;                   ///< p <= 0.05
   std::vector<std::string> apart_by_holm;  ///< measures with p_holm <= 0.05
 };
-Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons);
+Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons, bool headline);
 
 /// Throws InputError naming the nearest measure for a name that is none.
 void checkMeasureNames(const std::vector<std::string>& names);

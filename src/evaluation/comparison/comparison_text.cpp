@@ -91,13 +91,19 @@ std::string rowOf(const MeasureComparison& measure, bool intervals) {
          " |\n";
 }
 
-std::string tableOf(const Comparison& comparison) {
+/// The rows of one family; nothing without any.
+std::string tableOf(const Comparison& comparison, bool headline) {
+  std::string rows;
   const bool intervals = showsIntervals(comparison.clusters);
+  for (const MeasureComparison& measure : comparison.measures) {
+    if (measure.headline == headline) rows += rowOf(measure, intervals);
+  }
+  if (rows.empty()) return rows;
   const std::string range = intervals ? " [95 %] | " : " | ";
-  std::string text = headOf(comparison) + "\n| measure | pairs | kind | A" + range + "B" + range +
-                     "B - A" + range + "B / A" + range +
+  std::string text = "\n| measure | pairs | kind | A" + range + "B" + range + "B - A" + range +
+                     "B / A" + range +
                      "p | p (Holm) | note |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const MeasureComparison& measure : comparison.measures) text += rowOf(measure, intervals);
+  text += rows;
   const std::string drawn = comparison.cluster == "scenario" ? "route" : comparison.cluster;
   return intervals ? text : text + "\n" + intervalRule(drawn + "s") + "\n";
 }
@@ -114,9 +120,11 @@ std::string nothingCanStay(const std::vector<Comparison>& comparisons, const Mul
          "ones to test (--figure).\n";
 }
 
-std::string multiplicityText(const std::vector<Comparison>& comparisons) {
-  const Multiplicity number = multiplicityOf(comparisons);
-  return "Multiplicity: of " + countText(number.differences, "difference") + " tested here, " +
+/// Of one family; nothing where it is empty.
+std::string multiplicityText(const std::vector<Comparison>& comparisons, bool headline) {
+  const Multiplicity number = multiplicityOf(comparisons, headline);
+  if (number.differences == 0) return "";
+  return "\nMultiplicity: of " + countText(number.differences, "difference") + " tested here, " +
          std::to_string(number.apart) + " have p <= 0.05, where about " +
          core::formatFixed(0.05 * static_cast<double>(number.differences), 1) +
          " would by chance if A and B were the same; " +
@@ -124,6 +132,18 @@ std::string multiplicityText(const std::vector<Comparison>& comparisons) {
          " stay after Holm's correction for their number" +
          (number.apart_by_holm.empty() ? "" : ": " + core::joinText(number.apart_by_holm, ", ")) +
          ".\n" + nothingCanStay(comparisons, number);
+}
+
+bool hasHeadlines(const std::vector<Comparison>& comparisons) {
+  return multiplicityOf(comparisons, true).differences > 0;
+}
+
+/// A table for each comparison, and what stays of one family.
+std::string familyText(const std::vector<Comparison>& comparisons, bool headline) {
+  std::string text;
+  for (const Comparison& comparison : comparisons)
+    text += (text.empty() ? "" : "\n") + headOf(comparison) + tableOf(comparison, headline);
+  return text + multiplicityText(comparisons, headline);
 }
 
 std::vector<std::string> intervalCells(const std::optional<Interval>& interval) {
@@ -167,17 +187,22 @@ std::string csvLine(const Comparison& comparison, const MeasureComparison& measu
   cells.push_back(ratio ? core::csvNumber(measure.rates->ratio) : "");
   append(cells, intervalCells(ratio ? std::make_optional(measure.rates->interval) : std::nullopt));
   append(cells, {core::csvNumber(measure.p_exchange), core::csvNumber(measure.p),
-                 core::csvNumber(measure.p_holm)});
+                 core::csvNumber(measure.p_holm), measure.headline ? "headline" : "other"});
   return core::csvRow(cells);
 }
 
 }  // namespace
 
-std::string comparisonMarkdown(const std::vector<Comparison>& comparisons) {
-  std::string text;
-  for (const Comparison& comparison : comparisons)
-    text += (text.empty() ? "" : "\n") + tableOf(comparison);
-  return text.empty() ? text : text + "\n" + multiplicityText(comparisons);
+std::string comparisonMarkdown(const std::vector<Comparison>& comparisons, bool all) {
+  if (comparisons.empty()) return "";
+  if (!hasHeadlines(comparisons)) return familyText(comparisons, false);
+  const std::string text = familyText(comparisons, true);
+  const std::size_t others = multiplicityOf(comparisons, false).differences;
+  if (others == 0) return text;
+  if (!all)
+    return text + "\n" + countText(others, "further difference") +
+           ": --all shows them, the CSV file holds them.\n";
+  return text + "\n# All other measures\n\n" + familyText(comparisons, false);
 }
 
 std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
@@ -188,7 +213,7 @@ std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
       head.push_back(std::string(column) + side);
   }
   append(head, {"difference", "low_95", "high_95", "interval", "ratio", "ratio_low", "ratio_high",
-                "p_exchange", "p", "p_holm"});
+                "p_exchange", "p", "p_holm", "family"});
   std::string text = core::csvRow(head);
   for (const Comparison& comparison : comparisons) {
     for (const MeasureComparison& measure : comparison.measures)

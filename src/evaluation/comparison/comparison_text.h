@@ -11,7 +11,9 @@ namespace cdiff::evaluation {
 
 // Comparisons as texts: a table for people and rows for programs.
 
-std::string comparisonMarkdown(const std::vector<Comparison>& comparisons);
+/// The headline measures; with `all`, and where there are none, all others.
+std::string comparisonMarkdown(const std::vector<Comparison>& comparisons, bool all = false);
+/// All of them.
 std::string comparisonCsv(const std::vector<Comparison>& comparisons);
 
 }  // namespace cdiff::evaluation
