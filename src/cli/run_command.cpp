@@ -15,6 +15,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/result_writer.h"
+#include "planners/registry.h"
 #include "record/result_folder.h"
 #include "record/session_text.h"
 #include "session/closed_loop.h"
@@ -261,7 +262,9 @@ void addRunCommand(CLI::App& program, int& exit_code) {
                       "Network: shipped name, *.net.xml, *.xodr or *.osm");
   command->add_option("--mode", request.mode, "naturalistic or safety_critical");
   command->add_option("--ego-planner", request.ego_planner, "Planner of the ego");
-  command->add_option("--cbv-planner", request.cbv_planner, "Planner of the CBVs");
+  command->add_option("--cbv-planner", request.cbv_planner,
+                      "Planner of the CBVs; these can attack: " +
+                          core::joinText(planners::guidedPlannerNames(), ", "));
   command->add_option("--seed", request.seed, "Root seed instead of the scenario's");
   command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);

@@ -19,6 +19,7 @@
 #include "planners/registry.h"
 #include "session/closed_loop.h"
 #include "session/session_request.h"
+#include "session/unfit_combination.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -104,9 +105,11 @@ void checkEgoPlanner(const std::string& name) {
 /// Builds the product of all factors.
 class RunPlanner {
  public:
-  RunPlanner(const MatrixOptions& matrix, const std::string& source)
+  /// `skips_unfit`: whether levels that do not fit together are left out, not an error.
+  RunPlanner(const MatrixOptions& matrix, const std::string& source, bool skips_unfit)
       : matrix_(matrix),
         source_(source),
+        skips_unfit_(skips_unfit),
         combinations_(combinationsOf(matrix, source)),
         variants_(variantsOf(matrix, source)),
         named_(namedVariants(combinations_, variants_, source)) {
@@ -119,9 +122,20 @@ class RunPlanner {
     for (const ScenarioLevel& level : levels) {
       for (const Combination& combination : combinations_) addVariants(level, combination);
     }
+    if (runs_.empty()) throw InputError(leftOut().front());
     requireDistinct();
     nameRuns();
     return std::move(runs_);
+  }
+
+  /// A line for each reason to leave runs out.
+  std::vector<std::string> leftOut() const {
+    std::vector<std::string> lines;
+    for (const auto& [reason, count] : unfit_) {
+      lines.push_back(std::to_string(count) + (count == 1 ? " run" : " runs") + " of " + source_ +
+                      ": " + reason);
+    }
+    return lines;
   }
 
  private:
@@ -190,6 +204,12 @@ class RunPlanner {
         runs.push_back(runOf(level.label, options));
       }
       return runs;
+    } catch (const session::UnfitCombination& error) {
+      if (!skips_unfit_)
+        throw InputError(source_ + ", scenario " + level.label + ": " + error.what());
+      unfit_[error.what()] +=
+          std::max<std::size_t>(1, seeds.size()) * static_cast<std::size_t>(matrix_.repetitions);
+      return {};
     } catch (const InputError& error) {
       const std::string text = error.what();
       const bool named = text.rfind(source_, 0) == 0;
@@ -253,6 +273,8 @@ class RunPlanner {
 
   const MatrixOptions& matrix_;
   std::string source_;
+  bool skips_unfit_;
+  std::map<std::string, std::size_t> unfit_;  ///< runs that were left out, by reason
   InputHasher hasher_;
   std::vector<Combination> combinations_;
   std::vector<Variant> variants_;
@@ -271,7 +293,16 @@ const std::vector<std::string>& factorNames() {
 
 std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string& source) {
   requireOpeningReason(matrix, source);
-  return RunPlanner(matrix, source).plan();
+  return RunPlanner(matrix, source, false).plan();
+}
+
+std::vector<PlannedRun> planFittingRuns(const MatrixOptions& matrix, const std::string& source,
+                                        std::vector<std::string>& left_out) {
+  requireOpeningReason(matrix, source);
+  RunPlanner planner(matrix, source, true);
+  std::vector<PlannedRun> runs = planner.plan();
+  left_out = planner.leftOut();
+  return runs;
 }
 
 namespace {

@@ -70,6 +70,11 @@ struct PlannedRun {
 /// everything a scenario can have wrong.
 std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string& source);
 
+/// The same without the runs whose levels do not fit together (session::UnfitCombination). Throws
+/// InputError where that leaves none. Into `left_out` goes a line for each reason.
+std::vector<PlannedRun> planFittingRuns(const MatrixOptions& matrix, const std::string& source,
+                                        std::vector<std::string>& left_out);
+
 /// Part of a plan: of each factor that is named the levels that count.
 using ChosenLevels = std::map<std::string, std::set<std::string>>;
 

@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/planner_by_slot.h"
+#include "session/unfit_combination.h"
 #include "simulation/sumo_input_rules.h"
 
 namespace cdiff::session {
@@ -234,7 +235,7 @@ void ScenarioOptions::validate() const {
   planners::requirePlanner("cbv_planner", cbv_planner, planners::Role::kCbv);
   validateCameras();
   if (mode == "safety_critical" && !planners::canBeGuided(cbv_planner)) {
-    throw InputError(
+    throw UnfitCombination(
         "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +
         cbv_planner + "' drives naturalistically only; expected one of " +
         core::joinText(planners::guidedPlannerNames(), ", "));

@@ -247,6 +247,26 @@ TEST(Plan, NamesWhatIsWrong) {
   expectIn("the nearest known key is 'target_speed'", errorOf(matrix));
 }
 
+// Two planners x two modes x two seeds: PDM-Lite cannot attack.
+TEST(Plan, LeavesOutWhatDoesNotFitTogether) {
+  MatrixOptions matrix = oneScenario();
+  matrix.cbv_planners = {"diffusion", "pdm_lite"};
+  matrix.modes = {"naturalistic", "safety_critical"};
+  matrix.seeds = {"1", "2"};
+  std::vector<std::string> left_out;
+  const auto plan = planFittingRuns(matrix, "matrix.yaml", left_out);
+  EXPECT_EQ(plan.size(), 6U);
+  ASSERT_EQ(left_out.size(), 1U);
+  expectIn("2 runs of matrix.yaml: key 'mode' is 'safety_critical'", left_out[0]);
+  expectIn("'pdm_lite'", left_out[0]);
+  expectIn("scenario arterial_exit: key 'mode' is 'safety_critical'", errorOf(matrix));  // strict
+  matrix.cbv_planners = {"pdm_lite"};
+  matrix.modes = {"safety_critical"};
+  EXPECT_THROW(planFittingRuns(matrix, "matrix.yaml", left_out), core::InputError);
+  matrix.cbv_planners = {"pdm_lit"};  // wrong by itself
+  EXPECT_THROW(planFittingRuns(matrix, "matrix.yaml", left_out), core::InputError);
+}
+
 TEST(Plan, ARunIsPlannedOnce) {
   MatrixOptions matrix = oneScenario();
   matrix.seeds = {"1", "2", "1"};
