@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
@@ -22,6 +24,7 @@
 #include "evaluation/run_plan.h"
 #include "evaluation/separation/ego_ranking.h"
 #include "evaluation/suite_selection.h"
+#include "planners/registry.h"
 
 namespace cdiff::cli {
 namespace {
@@ -46,13 +49,14 @@ struct EvaluateArguments {
   int jobs = 1;
   bool resume = false;
   bool overwrite = false;
+  bool strict = false;
 };
 
 constexpr const char* kMatrixFile = "matrix.yaml";
 /// What a batch writes beside its runs, and what --overwrite replaces.
 const std::vector<std::string> kBatchFiles = {
-    "runs.csv", "summary.json", "summary.md",      "junit.xml",        "index.html",
-    "table.md", "compare.csv",  "ego_ranking.csv", "ego_ranking.html", kMatrixFile};
+    "runs.csv",    "summary.json", "summary.md",      "junit.xml",        "index.html", "table.md",
+    "compare.csv", "left_out.txt", "ego_ranking.csv", "ego_ranking.html", kMatrixFile};
 const std::vector<std::string> kBatchFolders = {"runs", "tables", "figures"};
 
 /// The Bench2Drive routes of the arguments.
@@ -189,7 +193,9 @@ std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
                                const EvaluateArguments& arguments,
                                const evaluation::ChosenLevels& chosen) {
   const auto isNow = [&](const auto& run) { return evaluation::isChosen(run, chosen); };
-  BatchProgress progress(static_cast<std::size_t>(std::count_if(plan.begin(), plan.end(), isNow)));
+  std::vector<evaluation::PlannedRun> now;
+  std::copy_if(plan.begin(), plan.end(), std::back_inserter(now), isNow);
+  BatchProgress progress(now, arguments.jobs);
   evaluation::ExecutorOptions options;
   options.results = results;
   options.jobs = arguments.jobs;
@@ -204,6 +210,26 @@ std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
   return records;
 }
 
+/// Without the runs whose levels do not fit together, or with --strict refused for them.
+std::vector<evaluation::PlannedRun> planOf(const MatrixOptions& matrix,
+                                           const EvaluateArguments& arguments,
+                                           std::vector<std::string>& left_out) {
+  const std::string source = arguments.matrix.empty() ? "evaluate" : arguments.matrix;
+  if (arguments.strict) return evaluation::planRuns(matrix, source);
+  return evaluation::planFittingRuns(matrix, source, left_out);
+}
+
+/// On standard error, and in a file for the batch's page.
+void noteLeftOut(core::OutputFolder& output, const std::vector<std::string>& left_out) {
+  if (left_out.empty()) {
+    output.remove({evaluation::kSkippedFile});
+    return;
+  }
+  for (const std::string& line : left_out)
+    std::cerr << "left out: " << line << " (--strict refuses it)\n";
+  output.write(evaluation::kSkippedFile, core::joinText(left_out, "\n") + "\n");
+}
+
 int evaluate(const EvaluateArguments& arguments) {
   const MatrixOptions matrix = matrixOf(arguments);
   const fs::path results = fs::absolute(arguments.results);
@@ -212,13 +238,14 @@ int evaluate(const EvaluateArguments& arguments) {
   std::string repeated;
   if (!matrix.bench2drive.file.empty())
     repeated = evaluation::repeatedText(evaluation::selectBench2Drive(matrix.bench2drive));
-  const auto plan =
-      evaluation::planRuns(matrix, arguments.matrix.empty() ? "evaluate" : arguments.matrix);
+  std::vector<std::string> left_out;
+  const auto plan = planOf(matrix, arguments, left_out);
   const evaluation::ChosenLevels chosen = evaluation::chosenLevels(arguments.only, plan);
   core::OutputFolder output(results, "cdiff evaluate");
   requireFolder(results, arguments);
   prepareFolder(output, matrix, arguments.overwrite);
   std::cerr << evaluation::recordOpening(matrix, results) << repeated;
+  noteLeftOut(output, left_out);
   const auto records = execute(plan, matrix, results, arguments, chosen);
   output.requireInPlace();
   evaluation::writeBatchFiles(results, matrix.name, records);
@@ -273,6 +300,11 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
   command->add_option("--jobs", arguments->jobs, "Sessions at a time")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  command->add_flag("--strict", arguments->strict,
+                    "Refuse a matrix with levels that do not fit together, instead of leaving "
+                    "their runs out with a note");
+  command->footer("Planners that can attack (mode safety_critical): " +
+                  core::joinText(planners::guidedPlannerNames(), ", "));
   CLI::Option* resume = command->add_flag(
       "--resume", arguments->resume,
       "Run only what is not complete yet, or was run with other files or another program");

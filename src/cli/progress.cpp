@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "core/text.h"
 #include "metrics/known_measures.h"
@@ -47,8 +48,9 @@ void Progress::observe(const session::TickRecord& record) {
   std::cerr.flush();
 }
 
-BatchProgress::BatchProgress(std::size_t total)
-    : total_(total),
+BatchProgress::BatchProgress(const std::vector<evaluation::PlannedRun>& runs, int jobs)
+    : total_(runs.size()),
+      remaining_(runs, jobs),
       terminal_(::isatty(STDERR_FILENO) == 1),
       begin_(std::chrono::steady_clock::now()) {}
 
@@ -63,6 +65,7 @@ void BatchProgress::repeated(const std::string& cause, const std::vector<std::st
 
 void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   ++done_;
+  remaining_.ended(record.id, resumed ? std::nullopt : std::make_optional(record.wall_seconds));
   if (resumed) {
     ++resumed_;
     return;
@@ -72,15 +75,13 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   simulated_ += record.simulated_seconds;
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  const double per_run = wall / static_cast<double>(done_ - resumed_);
-  const double left = per_run * static_cast<double>(total_ - done_);
   const auto cbvs = record.measures.find(metrics::known::kCbvCount.name);
   const bool none = cbvs != record.measures.end() && cbvs->second == 0.0;
   std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << broken_
             << " broken, " << failed_ << (failed_ == 1 ? " verdict" : " verdicts") << " failed, "
             << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1) << " x real time, "
-            << core::formatFixed(left, 0) << " s left: " << record.id << " " << record.status
-            << (record.complete() ? ", " + record::wordOf(record.verdict) : "")
+            << core::formatFixed(remaining_.left(wall), 0) << " s left: " << record.id << " "
+            << record.status << (record.complete() ? ", " + record::wordOf(record.verdict) : "")
             << (none ? ", no CBV" : "") << (record.cause.empty() ? "" : " (" + record.cause + ")")
             << (terminal_ && !record.failed() ? "" : "\n");
   std::cerr.flush();

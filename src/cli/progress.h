@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/remaining_time.h"
 #include "evaluation/run_record.h"
 #include "session/session_observer.h"
 
@@ -33,7 +34,8 @@ class Progress : public session::SessionObserver {
 /// CBV. On a terminal it rewrites one line; elsewhere it prints a line per run.
 class BatchProgress {
  public:
-  explicit BatchProgress(std::size_t total);
+  /// Of runs that are to be run, `jobs` at a time.
+  BatchProgress(const std::vector<evaluation::PlannedRun>& runs, int jobs);
   /// Prints one line about the runs that a resumed batch must repeat for the same cause.
   void repeated(const std::string& cause, const std::vector<std::string>& ids) const;
   /// A run has ended; `resumed`: it was complete before this batch started.
@@ -43,6 +45,7 @@ class BatchProgress {
 
  private:
   std::size_t total_;
+  evaluation::RemainingTime remaining_;
   bool terminal_;
   std::chrono::steady_clock::time_point begin_;
   std::size_t done_ = 0;

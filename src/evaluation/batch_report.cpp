@@ -11,12 +11,16 @@
 #include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/heat_map.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/paper/table_definitions.h"
+#include "evaluation/ranking.h"
+#include "evaluation/system_names.h"
 #include "evaluation/system_summary.h"
 #include "evaluation/trail_figure.h"
 #include "evaluation/trail_scene.h"
+#include "evaluation/worst_moments.h"
 #include "metrics/known_measures.h"
 #include "page/page_parts.h"
 
@@ -66,19 +70,64 @@ const char* headlineOf(Outcome worst) {
   return "Not every run could be judged";
 }
 
-Markup headerOf(const std::string& name, const std::vector<BatchRun>& runs) {
-  const Outcome worst = worstOf(runs);
+/// How many runs ended in which way, then what the batch left out.
+Markup countsOf(const std::vector<BatchRun>& runs, const std::string& skipped) {
   std::map<Outcome, std::size_t> counts;
   for (const BatchRun& run : runs) ++counts[outcomeOf(run.record)];
   const auto count = [&](Outcome outcome) { return std::to_string(counts[outcome]); };
-  const std::string counts_text = count(Outcome::kPassed) + " passed, " + count(Outcome::kStruck) +
-                                  " were struck, " + count(Outcome::kNotJudged) +
-                                  " were not judged, " + count(Outcome::kFailed) +
-                                  " ended with a failed verdict, " + count(Outcome::kError) +
-                                  " broke, were interrupted or did not run";
-  return page::pageHeader(
-      name, "evaluation of " + std::to_string(runs.size()) + " runs",
-      page::pageBanner(worst, headlineOf(worst), element("p", {}, counts_text)));
+  const std::string text = count(Outcome::kPassed) + " passed, " + count(Outcome::kStruck) +
+                           " were struck, " + count(Outcome::kNotJudged) + " were not judged, " +
+                           count(Outcome::kFailed) + " ended with a failed verdict, " +
+                           count(Outcome::kError) + " broke, were interrupted or did not run";
+  Markup html = element("p", {}, text);
+  for (const std::string& line : core::splitText(skipped, '\n'))
+    html += element("p", {}, "Left out: " + line);
+  return html;
+}
+
+/// The answer, then how the runs ended.
+Markup headerOf(const std::string& name, const std::vector<BatchRun>& runs, const Ranking& ranking,
+                const SystemNames& names, const std::string& skipped) {
+  const Outcome worst = worstOf(runs);
+  Markup answer;
+  for (const std::string& sentence : rankingSentences(ranking, names))
+    answer += element("p", {}, sentence);
+  return page::pageHeader(name, "evaluation of " + std::to_string(runs.size()) + " runs",
+                          element("div", {{"class", "answer"}}, answer) + "\n" +
+                              page::pageBanner(worst, headlineOf(worst), countsOf(runs, skipped)));
+}
+
+/// Where a run's report opens; its folder's name alone where it has none.
+Markup reportLink(const BatchRun& run, const Markup& text, const std::string& moment = "") {
+  if (!std::filesystem::exists(run.folder / "report.html")) return text;
+  return element(
+      "a", {{"href", "runs/" + run.record.id + "/report.html" + moment}, {"title", run.record.id}},
+      text);
+}
+
+Markup momentsHtml(const std::vector<BatchRun>& runs, const SystemNames& names) {
+  Markup items;
+  for (const WorstMoment& moment : worstMoments(runs)) {
+    const BatchRun& run = runs[moment.run];
+    const Factors& factors = run.record.factors;
+    const std::string seconds = moment.seconds ? core::formatFixed(*moment.seconds, 2) : "";
+    const std::string where = factors.at("scenario") + ", seed " + factors.at("seed") +
+                              (moment.seconds ? " at " + seconds + " s" : "");
+    items += element("li", {},
+                     reportLink(run, where, moment.seconds ? "#t=" + seconds : "") + ", " +
+                         names.of(factors) + ": " + moment.text) +
+             "\n";
+  }
+  return items.empty() ? page::pageNote("No contact, and no CBV near the ego.")
+                       : element("ol", {{"class", "worst"}}, "\n" + items) + "\n";
+}
+
+/// Those without a complete run come last.
+std::vector<System> inOrderOf(const Ranking& ranking, const std::vector<System>& systems) {
+  std::vector<System> ordered = ranking.systems;
+  std::copy_if(systems.begin(), systems.end(), std::back_inserter(ordered),
+               [](const System& system) { return system.routes == 0; });
+  return ordered;
 }
 
 std::string valueText(const BatchRun& run, const std::string& name, int decimals) {
@@ -86,44 +135,77 @@ std::string valueText(const BatchRun& run, const std::string& name, int decimals
   return found == run.record.measures.end() ? "–" : core::formatFixed(found->second, decimals);
 }
 
-/// The measures of each run that the page shows, with their decimals.
-std::vector<std::pair<const metrics::MeasureDefinition*, int>> shownMeasures() {
+/// The measures of each run that the page shows: heading and decimals.
+struct ShownMeasure {
+  const metrics::MeasureDefinition* measure;
+  const char* heading;
+  int decimals;
+};
+
+const std::vector<ShownMeasure>& shownMeasures() {
   namespace known = metrics::known;
-  return {{&known::kRouteCompletion, 1},  {&known::kDrivingScore, 1},
-          {&known::kEgoCollisions, 0},    {&known::kCbvDecisions, 0},
-          {&known::kCbvEgoCollisions, 0}, {&known::kCbvMinimumDistance, 1}};
+  static const std::vector<ShownMeasure> measures = {
+      {&known::kCbvEgoCollisions, "Contacts", 0},
+      {&known::kContactsAtFault, "At fault", 0},
+      {&known::kDrivingScore, "Score", 1},
+      {&known::kRouteCompletion, "Completion [%]", 1},
+      {&known::kCbvMinimumDistance, "Nearest CBV, between centers [m]", 1}};
+  return measures;
 }
 
-void addRow(const BatchRun& run, page::HtmlTable& table) {
+/// "timed_out" is "timed out".
+std::string plainWords(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  return key;
+}
+
+/// A reason folds to its first words.
+Markup foldedReason(const std::string& text) {
+  constexpr std::size_t kShown = 48;
+  if (text.size() <= kShown) return text;
+  return page::pageFold(core::cutText(text, kShown), element("p", {}, text), "reason");
+}
+
+void addRow(const BatchRun& run, const SystemNames& names, page::HtmlTable& table) {
   const RunRecord& record = run.record;
-  const bool has_report = std::filesystem::exists(run.folder / "report.html");
-  const std::string link = "runs/" + record.id + "/report.html";
+  const std::string& repetition = record.factors.at("repetition");
   const std::string status =
-      record.status + (record.complete() ? ", " + record::wordOf(record.verdict) : "");
+      record.complete() ? record::wordOf(record.verdict) : plainWords(record.status);
   std::vector<Markup> cells = {
-      has_report ? element("a", {{"href", link}}, record.id) : Markup(record.id), status};
-  for (const auto& [measure, decimals] : shownMeasures())
-    cells.emplace_back(valueText(run, measure->name, decimals));
-  cells.emplace_back(record.complete() ? core::joinText(record.reasons, "; ") : record.cause);
+      reportLink(run, record.factors.at("scenario")), names.of(record.factors),
+      record.factors.at("seed") + (repetition == "1" ? "" : ", repetition " + repetition), status};
+  for (const ShownMeasure& shown : shownMeasures())
+    cells.emplace_back(valueText(run, shown.measure->name, shown.decimals));
+  std::vector<std::string> reasons = record.reasons;
+  if (record.complete()) reasons.insert(reasons.begin(), plainWords(record.status));
+  cells.push_back(foldedReason(record.complete() ? core::joinText(reasons, "; ") : record.cause));
   table.row(cells, record::toText(outcomeOf(record)));
 }
 
-Markup runTable(const std::vector<BatchRun>& runs) {
+/// The script makes it work; without one all rows stay.
+Markup filterRow() {
+  return element("p", {{"class", "filter"}, core::flag("hidden")},
+                 element("label", {},
+                         "Show runs with " + element("input", {{"type", "search"},
+                                                               {"id", "filter"},
+                                                               {"placeholder", "any words"}})) +
+                     " " + element("output", {{"id", "shown"}}) + " A click on a heading sorts.") +
+         "\n";
+}
+
+Markup runTable(const std::vector<BatchRun>& runs, const SystemNames& names) {
   std::vector<const BatchRun*> order;
   for (const BatchRun& run : runs) order.push_back(&run);
   std::stable_sort(order.begin(), order.end(), [](const BatchRun* left, const BatchRun* right) {
     return rankOf(left->record) < rankOf(right->record);
   });
-  std::vector<std::string> head = {"Run", "Status"};
-  for (const auto& [measure, decimals] : shownMeasures()) {
-    const bool has_unit = decimals > 0 && *measure->unit != '\0';
-    head.push_back("#" + std::string(measure->label) +
-                   (has_unit ? " [" + std::string(measure->unit) + "]" : ""));
-  }
+  std::vector<std::string> head = {"Scenario", "Planner", "Seed", "Outcome"};
+  for (const ShownMeasure& shown : shownMeasures())
+    head.push_back("#" + std::string(shown.heading));
   head.emplace_back("Why");
   page::HtmlTable table(head);
-  for (const BatchRun* run : order) addRow(*run, table);
-  return table.html();
+  for (const BatchRun* run : order) addRow(*run, names, table);
+  return filterRow() + table.html();
 }
 
 Markup shownCell(const TableCell& cell, bool with_interval) {
@@ -161,20 +243,28 @@ Markup paperTable(const Table& table) {
 }  // namespace
 
 std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
-                      const std::vector<Table>& tables, const std::vector<Figure>& figures) {
+                      const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                      const std::string& skipped) {
   std::vector<RunRecord> records;
   for (const BatchRun& run : runs) records.push_back(run.record);
-  Markup html = headerOf(name, runs) +
-                page::pageSection("Systems", systemsHtml(systemsOf(records))) +
-                page::pageSection("Runs", runTable(runs));
+  const std::vector<System> systems = systemsOf(records);
+  const SystemNames names(systems);
+  const Ranking ranking = rankingOf(systems, records, names);
+  Markup html = headerOf(name, runs, ranking, names, skipped) +
+                page::pageSection("Scenario by planner", heatMap(records, ranking, names)) +
+                page::pageSection("Worst moments", momentsHtml(runs, names)) +
+                page::pageSection("Planners", systemsHtml(inOrderOf(ranking, systems))) +
+                page::pageSection("Runs", runTable(runs, names));
   for (const Table& table : tables)
     html += page::pageSection(table.definition.title, paperTable(table));
   for (const Figure& figure : figures) {
     html += page::pageSection(figure.sheet.title, page::sheetSvg(figure.sheet),
                               figure.wall_clock ? "wall-clock" : "");
   }
+  html += page::pageNote(
+      "Files of the batch: runs.csv, summary.json, summary.md, junit.xml, tables/, figures/.");
   return page::pageDocument(name + " – evaluation", {&page::kPanelSheetStyle, &kBatchPageStyle},
-                            html);
+                            html, core::scriptElement(kBatchPageScript));
 }
 
 namespace {
@@ -250,6 +340,19 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
   return text;
 }
 
+namespace {
+
+/// The shipped matrix whose page shows the paper's tables and figures; all others have them as
+/// files.
+constexpr const char* kPaperMatrix = "paper_tables";
+
+std::string skippedIn(const fs::path& results) {
+  const fs::path file = results / kSkippedFile;
+  return core::isFile(file) ? core::readFile(file, "list of what was left out") : "";
+}
+
+}  // namespace
+
 void writeBatchReport(const fs::path& results, const std::string& name) {
   const std::vector<BatchRun> runs = readBatchRuns(results);
   const std::string variant = pooledVariant(runs);
@@ -258,9 +361,11 @@ void writeBatchReport(const fs::path& results, const std::string& name) {
   for (const TableDefinition& definition : paperTables())
     tables.push_back(fillTable(withVariant(variant, definition), runs));
   std::vector<Figure> figures = paperFigures(pooled);
+  std::vector<Figure> trails;
   for (const TrailsOf who : {TrailsOf::kCbvs, TrailsOf::kEgo}) {
-    if (auto trails = trailFigure(runs, who)) figures.push_back(std::move(*trails));
+    if (auto figure = trailFigure(runs, who)) trails.push_back(std::move(*figure));
   }
+  figures.insert(figures.end(), trails.begin(), trails.end());
   core::OutputFolder output(results);
   core::OutputFolder table_files(output.subfolder("tables"));
   for (const Table& table : tables)
@@ -271,7 +376,9 @@ void writeBatchReport(const fs::path& results, const std::string& name) {
     figure_files.write(figure.id + ".csv", figure.csv);
     figure_files.write(figure.id + ".svg", page::sheetFile(figure.sheet));
   }
-  output.write("index.html", batchPage(name, runs, tables, figures));
+  const bool of_the_paper = name == kPaperMatrix;
+  output.write("index.html", batchPage(name, runs, of_the_paper ? tables : std::vector<Table>(),
+                                       of_the_paper ? figures : trails, skippedIn(results)));
 }
 
 }  // namespace cdiff::evaluation

@@ -16,20 +16,28 @@ namespace cdiff::evaluation {
 // .svg, figures/trails.csv and .svg, index.html. All are functions of the folder's records and
 // runs, and need nothing to run.
 
-/// Writes them all, each file whole. Throws InputError naming the file for a folder without
-/// records, a damaged record, summary or trace, and a file that cannot be written.
+/// Writes them all, each file whole. The page of the matrix paper_tables shows the paper's tables
+/// and figures; all others have them as files alone. Throws InputError naming the file for a folder
+/// without records, a damaged record, summary or trace, and a file that cannot be written.
 void writeBatchReport(const std::filesystem::path& results, const std::string& name);
 
 /// Text of tables.md.
 std::string tablesMarkdown(const std::vector<Table>& tables);
 
-/// Text of index.html: what failed first, every run with a link to its report, tables and figures;
-/// self-contained. Elements of class "wall-clock" hold all that depends on wall-clock time.
+/// Text of index.html, self-contained: which system is the hardest for the ego, scenarios against
+/// systems, the worst moments as links into reports, every run, tables and figures. `skipped`: what
+/// the batch left out, a line each. Elements of class "wall-clock" hold all that depends on
+/// wall-clock time.
 std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
-                      const std::vector<Table>& tables, const std::vector<Figure>& figures);
+                      const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                      const std::string& skipped = "");
 
-// Style sheets of a batch's page: the files in evaluation/assets.
+/// File of a result folder with what its matrix left out, a line each.
+inline constexpr const char* kSkippedFile = "left_out.txt";
+
+// Style sheet and script of a batch's page: the files in evaluation/assets.
 
 extern const core::Asset kBatchPageStyle;
+extern const core::Asset kBatchPageScript;
 
 }  // namespace cdiff::evaluation

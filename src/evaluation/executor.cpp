@@ -12,6 +12,7 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/run_order.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -45,6 +46,7 @@ class Executor {
 
   std::vector<RunRecord> execute() {
     for (std::size_t i = 0; i < plan_.size(); ++i) enqueue(i);
+    orderQueue();
     announceRuns();
     core::runProcesses(queue_, {options_.jobs, options_.timeout, options_.grace}, stop_,
                        {[this](std::size_t index) { return start(index); },
@@ -63,6 +65,13 @@ class Executor {
     if (options_.resume && staysOrIsCounted(index)) return;
     (isChosen(index) ? queue_ : later_).push_back(index);
   }
+  void orderQueue() {
+    const std::vector<std::size_t> order = runOrder(plan_);
+    std::vector<std::size_t> places(plan_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = i;
+    std::sort(queue_.begin(), queue_.end(),
+              [&](std::size_t left, std::size_t right) { return places[left] < places[right]; });
+  }
   bool isChosen(std::size_t index) const {
     return !options_.chosen || options_.chosen(plan_[index]);
   }
@@ -79,6 +88,7 @@ class Executor {
       if (isChosen(index)) repeated_[cause].push_back(plan_[index].id);
       return false;
     }
+    core::OutputFolder(folderOf(index)).removeUnfinished();  // of a batch that was killed there
     records_.back() = *earlier;
     resumed_.push_back(index);
     return true;

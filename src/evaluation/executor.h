@@ -33,7 +33,8 @@ struct ExecutorOptions {
 /// Folder of a run: RESULTS/runs/ID.
 std::filesystem::path runFolder(const std::filesystem::path& results, const std::string& id);
 
-/// Record of every planned run, in their order, whatever happened to it. Once `stop` is true no run
+/// Record of every planned run, in their order, whatever happened to it. They are run in the
+/// order of runOrder(). Once `stop` is true no run
 /// is started and those under way are interrupted.
 std::vector<RunRecord> executeRuns(const std::vector<PlannedRun>& plan,
                                    const ExecutorOptions& options, const std::atomic<bool>& stop);

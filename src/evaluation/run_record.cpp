@@ -238,6 +238,20 @@ void addNumbers(const json& object, const std::string& place, SummaryNumbers& nu
 
 }  // namespace
 
+std::vector<RunContact> contactsIn(const std::string& text, const std::string& source) {
+  std::vector<RunContact> contacts;
+  try {
+    const json summary = json::parse(text);
+    for (const json& entry : summary.value(json::json_pointer("/ego/contacts"), json::array())) {
+      contacts.push_back({entry.at("seconds"), entry.at("with"), entry.at("ego_at_fault"),
+                          entry.at("why"), entry.at("ego_speed_mps"), entry.at("other_speed_mps")});
+    }
+  } catch (const json::exception& error) {
+    throw core::InputError("'" + source + "' is no summary of a session: " + error.what());
+  }
+  return contacts;
+}
+
 SummaryNumbers summaryNumbers(const std::string& text, const std::string& source) {
   const json summary = json::parse(text, nullptr, false);
   if (!summary.is_object()) {
@@ -270,7 +284,9 @@ std::vector<BatchRun> readBatchRuns(const std::filesystem::path& results) {
     run.folder = runFolder(results, record.id);
     const auto file = run.folder / "summary.json";
     if (record.complete()) {
-      run.numbers = summaryNumbers(core::readFile(file, "summary"), file.string());
+      const std::string summary = core::readFile(file, "summary");
+      run.numbers = summaryNumbers(summary, file.string());
+      run.contacts = contactsIn(summary, file.string());
       const session::ScenarioOptions scenario = scenarioOf(run);
       run.settings = settingsOf(scenario);
       run.cbv_conditioning = cbvConditioningOf(scenario);

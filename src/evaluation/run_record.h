@@ -79,6 +79,20 @@ std::optional<RunRecord> readRecord(const std::filesystem::path& file);
 /// damaged.
 std::vector<RunRecord> readRecords(const std::filesystem::path& results);
 
+/// A contact of the ego, as a run's summary.json has it.
+struct RunContact {
+  double seconds = 0.0;  ///< time in the session [s]
+  std::string partner;   ///< id of the other vehicle
+  bool ego_at_fault = false;
+  std::string why;           ///< who struck whom, in a short sentence
+  double ego_speed = 0.0;    ///< [m/s]
+  double other_speed = 0.0;  ///< [m/s]
+};
+
+/// In order of time; empty for a summary of a version without them. Throws InputError naming
+/// `source` for a text that is no summary.
+std::vector<RunContact> contactsIn(const std::string& text, const std::string& source);
+
 /// Numbers of a summary.json by JSON pointer (`MeasureDefinition::place`); lists are left out.
 using SummaryNumbers = std::map<std::string, double>;
 
@@ -89,9 +103,10 @@ SummaryNumbers summaryNumbers(const std::string& text, const std::string& source
 struct BatchRun {
   RunRecord record;
   std::filesystem::path folder;
-  SummaryNumbers numbers;          ///< empty unless the run is complete
-  std::string settings{};          ///< see settingsOf; empty unless the run is complete
-  std::string cbv_conditioning{};  ///< see cbvConditioningOf; likewise
+  SummaryNumbers numbers;              ///< empty unless the run is complete
+  std::string settings{};              ///< see settingsOf; empty unless the run is complete
+  std::string cbv_conditioning{};      ///< see cbvConditioningOf; likewise
+  std::vector<RunContact> contacts{};  ///< of the ego
 
   /// Value at a JSON pointer; nullopt where the summary has no number there.
   std::optional<double> number(const std::string& pointer) const;

@@ -6,7 +6,9 @@
 #include <set>
 
 #include "core/text.h"
+#include "evaluation/headline_measures.h"
 #include "evaluation/intervals/pooled_estimate.h"
+#include "evaluation/system_names.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 #include "page/page_parts.h"
@@ -173,17 +175,53 @@ std::string systemsMarkdown(const std::vector<System>& systems) {
   return text + (anyWithout(systems) ? "\n" + intervalRule() + "\n" : "");
 }
 
-Markup systemsHtml(const std::vector<System>& systems) {
-  Markup html;
-  for (const std::string& remark : remarks(systems)) html += page::pageNote(remark);
-  page::HtmlTable table(headCells());
+namespace {
+
+/// "Driving score", "Route completion [%]"; of events "Collisions of the ego / km".
+std::string labelOf(const std::string& measure) {
+  const metrics::MeasureDefinition* definition = metrics::findMeasure(measure);
+  if (definition == nullptr)
+    return measure == "cbv_passed_percent" ? "CBVs that passed their conflict point [%]" : measure;
+  const std::string label = definition->label;
+  const std::string unit = definition->unit;
+  if (unit == "count") return label + " / km";
+  return unit.empty() ? label : label + " [" + unit + "]";
+}
+
+/// A row for each system, a column for each measure.
+Markup measureTable(const std::vector<System>& systems, const SystemNames& names,
+                    const std::vector<std::string>& measures) {
+  std::vector<std::string> head = {"Planner", "#Runs", "#Routes", "#Seeds"};
+  for (const std::string& measure : measures) head.push_back("#" + labelOf(measure));
+  page::HtmlTable table(head);
   for (const System& system : systems) {
-    const std::vector<std::string> cells = rowCells(system, systems);
-    table.row({cells.begin(), cells.end()});
+    const std::size_t lost = system.failed + system.missing;
+    std::vector<Markup> cells = {
+        names.of(system.factors),
+        std::to_string(system.runs) +
+            (lost == 0 ? "" : ", " + std::to_string(lost) + " not complete"),
+        std::to_string(system.routes), std::to_string(system.seeds)};
+    for (const std::string& measure : measures) {
+      const auto found = system.measures.find(measure);
+      cells.emplace_back(
+          estimateText(found == system.measures.end() ? PooledEstimate() : found->second, 2,
+                       showsIntervals(system.routes)));
+    }
+    table.row(cells);
   }
-  html += table.html();
-  if (anyWithout(systems)) html += page::pageNote(intervalRule());
-  return html;
+  return table.html();
+}
+
+}  // namespace
+
+Markup systemsHtml(const std::vector<System>& systems) {
+  const SystemNames names(systems);
+  Markup html = measureTable(systems, names, headlineMeasures());
+  Markup rest;
+  for (const std::string& remark : remarks(systems)) rest += page::pageNote(remark);
+  rest += measureTable(systems, names, shownMeasures());
+  if (anyWithout(systems)) rest += page::pageNote(intervalRule());
+  return html + page::pageFold("More measures, and how to read them", rest);
 }
 
 }  // namespace cdiff::evaluation

@@ -89,6 +89,33 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   expectOutput("is the result of a single session; --compare pairs the runs of two batches");
 }
 
+// Of two planners and two modes one combination does not exist.
+TEST_F(EvaluateCommand, LeavesOutWhatDoesNotFitTogetherOrRefusesIt) {
+  const std::string matrix =
+      write("matrix.yaml", std::string("scenarios: [arterial_exit]\nego_planners: [constant]\n") +
+                               "cbv_planners: [two_stage_pid, pdm_lite]\nmodes: [naturalistic, "
+                               "safety_critical]\n" +
+                               kShort);
+  const fs::path results = folder("results");
+  EXPECT_EQ(cdiff({"evaluate", matrix, "--results", results.string(), "--strict"}), 3);
+  expectOutput("cbv_planner 'pdm_lite' drives naturalistically only");
+  ASSERT_EQ(cdiff({"evaluate", matrix, "--results", results.string()}), 0) << output();
+  expectOutput("left out: 1 run of ");
+  expectOutput("(--strict refuses it)");
+  expectOutput("3/3 done, 0 broken");
+  const std::string page = core::readFile(results / "index.html", "page");
+  EXPECT_NE(page.find("Left out: 1 run of "), std::string::npos);
+  EXPECT_EQ(page.find("Table 1"), std::string::npos);  // the paper's
+  ASSERT_EQ(cdiff({"report", "--compare", results.string(), "--factor", "cbv_planner", "--baseline",
+                   "pdm_lite"}),
+            0);
+  expectOutput("| ego_driving_score | 1 |");
+  expectOutput("--all shows them");
+  EXPECT_EQ(output().find("| ego_distance_m |"), std::string::npos);
+  ASSERT_EQ(cdiff({"evaluate", "--help"}), 0);
+  expectOutput("Planners that can attack (mode safety_critical): diffusion, two_stage_pid");
+}
+
 TEST_F(EvaluateCommand, TriesAgainWhenSumoDiesAndSaysSo) {
   const std::string sumo = write("sumo", "#!/bin/sh\nexit 1\n");
   fs::permissions(sumo, fs::perms::owner_all);
@@ -111,7 +138,8 @@ TEST_F(EvaluateCommand, EndsCleanlyWhenInterrupted) {
   const fs::path results = folder("results");
   test::ProgramRun process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results.string()},
                            scratch_.path() / "output");
-  while (!fs::exists(results / "runs" / "arterial_exit__seed1" / "session.yaml")) {
+  // The first by the hash of its id.
+  while (!fs::exists(results / "runs" / "arterial_exit__seed2" / "session.yaml")) {
     ASSERT_FALSE(process.ended()) << output();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }

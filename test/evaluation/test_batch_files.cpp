@@ -235,6 +235,41 @@ TEST_P(BatchVerdict, IsThatOfTheSession) {
   EXPECT_TRUE(has(page, "<tr class=\"" + shown + "\">"));
 }
 
+/// The page of a batch whose first run has a report and a contact at 15.8 s.
+std::string contactPage(const test::TemporaryFolder& folder, std::vector<RunRecord> records) {
+  core::writeFileAtomically(folder.path() / "report.html", "");
+  std::vector<BatchRun> runs;
+  for (const RunRecord& record : records) runs.push_back({record, folder.path(), {}});
+  runs.front().contacts = {{15.8, "vehicle_27", true, "its front struck the rear", 8.0, 2.0}};
+  return batchPage("night", runs, {}, {}, "6 runs of m.yaml: cannot be guided");
+}
+
+TEST_F(BatchFiles, ThePageAnswersFirstAndLinksTheWorstMoment) {
+  const test::TemporaryFolder folder;
+  records_[0].measures["cbv_ego_collisions"] = 2.0;
+  records_[0].measures["cbv_distance_m"] = 1000.0;
+  const std::string page = contactPage(folder, records_);
+  expectIn("<div class=\"answer\"><p>pdm_lite: CBVs touched the ego 2 times in 1.00 km (2.0 per km",
+           page);
+  EXPECT_LT(page.find("class=\"answer\""), page.find("class=\"banner"));
+  expectIn(
+      "<li><a href=\"runs/s_none_1_1/report.html#t=15.80\" title=\"s_none_1_1\">s, seed 1 at "
+      "15.80 s</a>, pdm_lite: contact of the ego with vehicle_27 (the ego&#39;s fault)",
+      page);
+  expectIn("Left out: 6 runs of m.yaml: cannot be guided", page);
+}
+
+TEST_F(BatchFiles, ThePageFoldsLongReasonsAndSpellsKeysOut) {
+  const test::TemporaryFolder folder;
+  records_[1].reasons = {std::string(200, 'x')};
+  const std::string page = contactPage(folder, records_);
+  expectIn("<details class=\"reason\"><summary>", page);
+  for (const char* key : {"ego_driving_score", "cbv_off_road", "ego_completion_percent"})
+    EXPECT_EQ(page.find(key), std::string::npos) << key;
+  expectIn("Route completion [%]", page);
+  expectIn("id=\"filter\"", page);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, BatchVerdict, testing::ValuesIn(test::verdictCases()),
                          [](const auto& info) { return info.param.name; });
 

@@ -104,6 +104,16 @@ TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
   EXPECT_EQ(ends_.size(), 4U);
 }
 
+// By a hash of the ids, since they are of one system and scenario.
+TEST_F(ExecutorTest, RunsInTheOrderOfASample) {
+  options_.jobs = 1;
+  std::vector<std::string> ended;
+  options_.ended = [&](const RunRecord& record, bool) { ended.push_back(record.id); };
+  execute(plan(std::vector<std::string>(6, "good")));
+  EXPECT_EQ(ended,
+            (std::vector<std::string>{"good3", "good1", "good0", "good5", "good4", "good2"}));
+}
+
 TEST_F(ExecutorTest, RunsOnlyWhatIsChosenAndLeavesTheRestForLater) {
   const std::vector<PlannedRun> runs = plan({"good", "good", "good"});
   options_.chosen = [](const PlannedRun& run) { return run.id == "good1"; };
@@ -121,6 +131,18 @@ TEST_F(ExecutorTest, RunsOnlyWhatIsChosenAndLeavesTheRestForLater) {
   records = execute(runs);
   for (const PlannedRun& run : runs) EXPECT_EQ(attempts(run.id), 1U) << run.id;
   EXPECT_EQ(records[0].status, "completed");
+}
+
+// A batch that was killed between giving a record its name and taking its part off the folder's
+// list.
+TEST_F(ExecutorTest, TakesAwayWhatAKilledBatchLeftBesideAResult) {
+  const std::vector<PlannedRun> runs = plan({"good"});
+  execute(runs);
+  core::OutputFolder(runFolder(options_.results, "good0")).claim("record.json.part");
+  options_.resume = true;
+  execute(runs);
+  EXPECT_EQ(attempts("good0"), 1U);
+  EXPECT_FALSE(core::OutputFolder::lists(runFolder(options_.results, "good0"), "record.json.part"));
 }
 
 TEST_F(ExecutorTest, AStaleRecordThatIsNotChosenStays) {

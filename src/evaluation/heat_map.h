@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <vector>
+
+#include "core/markup.h"
+#include "evaluation/ranking.h"
+
+namespace cdiff::evaluation {
+
+/// A table of scenarios (rows, most contacts first) against systems (columns, in the order of the
+/// ranking): contacts of CBVs with the ego, those of the ego at its fault, the mean driving score.
+/// The color is that of contacts per run. A cell links to its runs in the table below.
+core::Markup heatMap(const std::vector<RunRecord>& records, const Ranking& ranking,
+                     const SystemNames& names);
+
+}  // namespace cdiff::evaluation
