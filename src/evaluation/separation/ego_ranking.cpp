@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/intervals/pooled_estimate.h"
+#include "evaluation/executor.h"
 #include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
