@@ -122,7 +122,7 @@ class Inquiry {
   }
 
   void requireGoOn() const {
-    if (stop_) throw core::Error("interrupted");
+    if (stop_) throw core::Interrupted("interrupted; the answers so far are kept");
   }
   Course open(const TakeOver& at, double shift) const {
     requireGoOn();

@@ -52,8 +52,8 @@ struct Answer {
 Question questionOf(const RecordedRun& run, std::optional<std::size_t> contact,
                     std::optional<double> seconds, double before);
 
-/// Answers; asks for a stop between runs. Throws as repeatRecorded does, and core::Error when it
-/// was stopped.
+/// Answers; asks for a stop between runs. Throws as repeatRecorded does, and core::Interrupted when
+/// it was stopped.
 Answer answer(const RecordedRun& run, const session::SessionSetup& setup, const Driver& driver,
               const Question& question, const std::atomic<bool>& stop);
 

@@ -91,6 +91,16 @@ TEST(EgoRanking, NeighborsWhoseIntervalsOverlapAreNamed) {
             std::vector<std::string>{"intervals overlap: careful and constant_speed"});
 }
 
+TEST(EgoRanking, WithdrawnAttacksAreAShareOfDecisions) {
+  std::vector<EgoRun> runs = {runOf("careful", "a", "1", 0), runOf("careful", "b", "1", 0)};
+  EXPECT_FALSE(rankEgos(runs).front().egos.front().withdrawn_percent);
+  runs[0].challenges = 30;
+  runs[0].withdrawn = 5;
+  runs[1].challenges = 10;
+  runs[1].withdrawn = 5;  // 10 of 40
+  EXPECT_DOUBLE_EQ(*rankEgos(runs).front().egos.front().withdrawn_percent, 25.0);
+}
+
 TEST(EgoRanking, SettingsAreNotPooled) {
   std::vector<EgoRun> runs;
   add("careful", 1, runs);

@@ -77,6 +77,13 @@ double numberAt(const json& object, const char* key) {
   return value.is_number() ? value.get<double>() : 0.0;
 }
 
+void addChallenges(const json& summary, EgoRun& run) {
+  const json challenge = summary.value("challenge", json::object());
+  run.challenges = challenge.value("decisions", std::size_t{0});
+  for (const auto& [reason, count] : challenge.value("withdrawn", json::object()).items())
+    run.withdrawn += count.get<std::size_t>();
+}
+
 /// Time between ticks [s]: the session's length over its last tick.
 double stepOf(std::string_view trace, double seconds) {
   const std::size_t last = trace.size() < 2 ? 0 : trace.rfind('\n', trace.size() - 2) + 1;
@@ -104,6 +111,7 @@ EgoRun readRun(const fs::path& folder, const fs::path& base) {
   run.standing_minutes = standingMinutes(trace, step);
   addContacts(folder, summary, step, run);
   addAnswers(folder, summary.at("trace_sha256"), run);
+  addChallenges(summary, run);
   return run;
 }
 
@@ -211,6 +219,8 @@ EgoFigures figuresOf(const std::string& ego, const Runs& runs, RouteBootstrap& b
   figures.ego = ego;
   figures.runs = runs.size();
   double standing = 0.0;
+  double challenges = 0.0;
+  double withdrawn = 0.0;
   for (const EgoRun* run : runs) {
     figures.kilometers += run->kilometers;
     figures.minutes += run->minutes;
@@ -219,10 +229,13 @@ EgoFigures figuresOf(const std::string& ego, const Runs& runs, RouteBootstrap& b
     figures.completion_percent += run->completion_percent / static_cast<double>(runs.size());
     figures.driving_score += run->driving_score / static_cast<double>(runs.size());
     standing += run->standing_minutes;
+    challenges += static_cast<double>(run->challenges);
+    withdrawn += static_cast<double>(run->withdrawn);
     for (const EgoRun::Contact& contact : run->contacts) countContact(*run, contact, figures);
   }
   const auto contacts = static_cast<double>(figures.contacts);
   figures.standing_percent = 100.0 * ratio(standing, figures.minutes);
+  if (challenges > 0.0) figures.withdrawn_percent = 100.0 * withdrawn / challenges;
   figures.per_km = ratio(contacts, figures.kilometers);
   figures.per_minute = ratio(contacts, figures.minutes);
   const std::set<std::string> scenarios = scenariosOf(runs);

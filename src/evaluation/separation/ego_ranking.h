@@ -32,6 +32,8 @@ struct EgoRun {
   double completion_percent = 0.0;
   double driving_score = 0.0;
   std::size_t near_misses = 0;  ///< measure ego_near_misses
+  std::size_t challenges = 0;   ///< decisions of CBVs in mode challenging
+  std::size_t withdrawn = 0;    ///< of these, without an attack that could be answered
   /// A contact of the ego.
   struct Contact {
     double seconds = 0.0;
@@ -74,7 +76,8 @@ struct EgoFigures {
   std::size_t standing = 0;                     ///< contacts with the ego standing
   std::size_t slow = 0;                         ///< contacts with a partner slower than 1 m/s
   std::size_t near_misses = 0;
-  double standing_percent = 0.0;  ///< of its time
+  std::optional<double> withdrawn_percent;  ///< of the CBVs' decisions in mode challenging
+  double standing_percent = 0.0;            ///< of its time
   double completion_percent = 0.0;
   double driving_score = 0.0;
   std::map<std::string, AvoidedShare> avoided;  ///< by driver

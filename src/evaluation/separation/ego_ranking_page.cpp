@@ -100,7 +100,8 @@ page::PanelSheet sheetOf(const EgoRanking& ranking) {
 Markup figureTable(const EgoRanking& ranking) {
   page::HtmlTable table({"Ego", "#Runs", "Contacts per km", "#Per minute", "#On a standing ego [%]",
                          "#From behind [%]", "#By one below 1 m/s [%]", "#Near misses per km",
-                         "#Stands [% of time]", "#Route completion [%]", "#Driving score"});
+                         "#Attacks withdrawn [% of decisions]", "#Stands [% of time]",
+                         "#Route completion [%]", "#Driving score"});
   for (const EgoFigures& ego : ranking.egos) {
     const double near =
         ego.kilometers > 0.0 ? static_cast<double>(ego.near_misses) / ego.kilometers : 0.0;
@@ -108,6 +109,7 @@ Markup figureTable(const EgoRanking& ranking) {
                percentText(ego.standing, ego.contacts),
                percentText(countOf(ego, ContactKind::kFromBehind), ego.contacts),
                percentText(ego.slow, ego.contacts), fixedText(near, 2),
+               ego.withdrawn_percent ? fixedText(*ego.withdrawn_percent, 1) : "–",
                fixedText(ego.standing_percent, 1), fixedText(ego.completion_percent, 1),
                fixedText(ego.driving_score, 1)});
   }
@@ -207,8 +209,8 @@ std::string rankingCsv(const std::vector<EgoRanking>& rankings) {
       "contacts",       "per_km", "per_km_low", "per_km_high", "per_minute", "per_minute_low",
       "per_minute_high"};
   for (const ContactKind kind : kContactKinds) head.emplace_back(toText(kind));
-  for (const char* name : {"standing_ego", "slow_partner", "near_misses", "standing_percent",
-                           "completion_percent", "driving_score"})
+  for (const char* name : {"standing_ego", "slow_partner", "near_misses", "withdrawn_percent",
+                           "standing_percent", "completion_percent", "driving_score"})
     head.emplace_back(name);
   std::string csv = core::csvRow(head);
   for (const EgoRanking& ranking : rankings) {
@@ -226,6 +228,7 @@ std::string rankingCsv(const std::vector<EgoRanking>& rankings) {
         cells.push_back(std::to_string(countOf(ego, kind)));
       for (const std::size_t count : {ego.standing, ego.slow, ego.near_misses})
         cells.push_back(std::to_string(count));
+      cells.push_back(ego.withdrawn_percent ? fixedText(*ego.withdrawn_percent, 2) : "");
       for (const double value : {ego.standing_percent, ego.completion_percent, ego.driving_score})
         cells.push_back(fixedText(value, 2));
       csv += core::csvRow(cells);
