@@ -41,6 +41,8 @@ void requireOwnKeys(const session::ScenarioOptions& before, const session::Scena
 
 }  // namespace
 
+std::string defaultDriver() { return planners::plannerTitled("Careful driver"); }
+
 std::string DriverChoice::label() const {
   std::string text = planner;
   for (const std::string& assignment : set) {

@@ -14,12 +14,15 @@ namespace cdiff::what_if {
 // Who drives in a session that runs again: the recorded actions, and from a take-over on a driver
 // of the user's choice.
 
+/// Name of the planner that takes over unless another one is named.
+std::string defaultDriver();
+
 /// Who takes the ego over.
 struct DriverChoice {
-  std::string planner = "careful_driver";  ///< of the table of planners
-  std::vector<std::string> set;            ///< "key=value" each: options of that planner
+  std::string planner = defaultDriver();  ///< of the table of planners
+  std::vector<std::string> set = {};      ///< "key=value" each: options of that planner
 
-  /// For people and file names: "careful_driver", "careful_driver delay=0.5".
+  /// For people and file names: the planner's name, and what is set: "NAME delay=1.25".
   std::string label() const;
 };
 

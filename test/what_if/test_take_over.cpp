@@ -13,6 +13,10 @@
 namespace cdiff::what_if {
 namespace {
 
+TEST(Driver, TheDefaultIsAPlannerOfTheTable) {
+  EXPECT_NE(planners::findPlanner(DriverChoice().planner), nullptr);
+}
+
 TEST(LatestAvoiding, IsTheSmallestThatAvoids) {
   for (int latest = 1; latest <= 30; ++latest) {
     int asked = 0;
