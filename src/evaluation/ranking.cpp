@@ -71,15 +71,16 @@ std::string apartText(const Ranking& ranking, std::size_t others) {
   const auto& not_apart = ranking.not_apart;
   if (others == 0) return "";
   const std::string p = probabilityText(std::max(ranking.largest_p, 0.0005));
-  const std::string beyond =
-      "beyond chance (p " + std::string(p.front() == '<' ? p : "<= " + p) + ", Holm)";
+  const std::string beyond = ", beyond chance (p " + std::string(p.front() == '<' ? p : "<= " + p) +
+                             " after Holm's correction).";
   if (not_apart.empty())
-    return "That is more than " + std::string(others == 1 ? "the other" : "all others") + ", " +
-           beyond + ".";
+    return "The first has more than " + std::string(others == 1 ? "the other" : "all others") +
+           beyond;
   const std::string open = "Not shown to be harder than " + core::joinText(not_apart, ", ") + ".";
-  return not_apart.size() == others ? open : open + " More than the rest " + beyond + ".";
+  return not_apart.size() == others ? open : open + " It has more than the rest" + beyond;
 }
 
+/// The others, after the first.
 std::string rankedText(const Ranking& ranking, const SystemNames& names) {
   constexpr std::size_t kFirst = 3;
   const auto& systems = ranking.systems;

@@ -71,7 +71,9 @@ TEST(Ranking, NamesTheHardestWithItsUncertainty) {
                 "pdm_lite driving naturally 0 times in 0.20 km (0.0 per km, 95 % [0.0, 18.4])"),
             std::string::npos)
       << sentences[1];
-  EXPECT_EQ(sentences[2], "That is more than all others, beyond chance (p <= 0.016, Holm).");
+  EXPECT_EQ(
+      sentences[2],
+      "The first has more than all others, beyond chance (p <= 0.016 after Holm's correction).");
 }
 
 TEST(Ranking, SaysWhichDifferenceIsNotShown) {
