@@ -39,26 +39,6 @@ std::string withoutGeneratedComment(std::string text) {
   return text;
 }
 
-[[noreturn]] void failWithoutRoads(const std::string& subject) {
-  throw core::InputError(
-      subject +
-      ": holds no road for cars; expected a part of a map with streets that cars "
-      "may use and that are connected");
-}
-
-/// Runs netconvert, and says in plain words when nothing is left of the roads.
-void convertRoads(const std::vector<std::string>& arguments, const std::string& subject) {
-  try {
-    runNetconvert(arguments, subject);
-  } catch (const core::InputError& error) {
-    const std::string text = error.what();
-    for (const char* sign : {"No nodes loaded", "No edges loaded"}) {
-      if (text.find(sign) != std::string::npos) failWithoutRoads(subject);
-    }
-    throw;
-  }
-}
-
 /// Text of the SUMO network that netconvert makes of `source`; `format` is its option for the
 /// source, `types` the file of the type map that goes with it.
 std::string convert(const fs::path& source, const std::string& format, const std::string& types,
@@ -78,11 +58,9 @@ std::string convert(const fs::path& source, const std::string& format, const std
                                         "never"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const std::string subject = "network '" + source.string() + "'";
-  convertRoads(arguments, subject);
+  runNetconvert(arguments, subject);
   if (!fs::exists(converted)) throw core::InputError(subject + ": netconvert wrote no network");
-  std::string text = withoutGeneratedComment(core::readFile(converted, "converted network"));
-  if (text.find("<lane ") == std::string::npos) failWithoutRoads(subject);
-  return text;
+  return withoutGeneratedComment(core::readFile(converted, "converted network"));
 }
 
 /// Part of the cache key: raise the number when the importer gives another result for the same
@@ -240,12 +218,35 @@ std::string convertOpenDrive(const fs::path& source) {
                  {"--opendrive.curve-resolution", "1", "--opendrive.min-width", "0"});
 }
 
+namespace {
+
+/// netconvert's words where nothing of a map is left.
+bool saysNoRoads(const std::string& text) {
+  return text.find("No nodes loaded") != std::string::npos ||
+         text.find("No edges loaded") != std::string::npos;
+}
+
+[[noreturn]] void failWithoutRoads(const fs::path& source) {
+  throw core::InputError("network '" + source.string() +
+                         "': holds no road for cars; expected a part of a map with streets that "
+                         "cars may use and that are connected");
+}
+
+}  // namespace
+
 std::string convertOpenStreetMap(const fs::path& source) {
-  return convert(
-      source, "--osm-files", "osmNetconvert.typ.xml",
-      {"--geometry.remove", "true", "--roundabouts.guess", "true", "--ramps.guess", "true",
-       "--junctions.join", "true", "--tls.discard-simple", "true", "--tls.join", "true",
-       "--remove-edges.isolated", "true", "--keep-edges.by-vclass", "passenger"});
+  try {
+    std::string text =
+        convert(source, "--osm-files", "osmNetconvert.typ.xml",
+                {"--geometry.remove", "true", "--roundabouts.guess", "true", "--ramps.guess",
+                 "true", "--junctions.join", "true", "--tls.discard-simple", "true", "--tls.join",
+                 "true", "--remove-edges.isolated", "true", "--keep-edges.by-vclass", "passenger"});
+    if (text.find("<lane ") == std::string::npos) failWithoutRoads(source);
+    return text;
+  } catch (const core::InputError& error) {
+    if (saysNoRoads(error.what())) failWithoutRoads(source);
+    throw;
+  }
 }
 
 fs::path networkFile(const std::string& source) {

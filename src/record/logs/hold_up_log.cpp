@@ -158,6 +158,7 @@ void HoldUpLog::conclude(const traffic::TrafficSnapshot& snapshot, const WaitCha
     result.held_behind = id;
     result.held_behind_seconds = seconds;
   }
+  result.held_behind_seconds = std::min(result.held_behind_seconds, stood_ + slow_);
   found_ = result;
 }
 
