@@ -221,6 +221,10 @@ TEST_F(TrailFigure, TheReportOfABatchShowsIt) {
   writeBatchReport(scratch_.path(), "two planners");
   const std::string page = core::readFile(scratch_.path() / "index.html", "page");
   EXPECT_TRUE(has(page, "<h2>One scene, driven by each CBV planner</h2>"));
+  EXPECT_FALSE(has(page, "id=\"table-1"));
+  EXPECT_TRUE(fs::exists(scratch_.path() / "tables" / "table_1.csv"));
+  writeBatchReport(scratch_.path(), "paper_tables");  // whose page alone shows the paper's tables
+  EXPECT_TRUE(has(core::readFile(scratch_.path() / "index.html", "page"), "id=\"table-1"));
   EXPECT_TRUE(has(core::readFile(scratch_.path() / "figures" / "trails.svg", "figure"),
                   "class=\"trail cbv"));
   EXPECT_TRUE(has(core::readFile(scratch_.path() / "figures" / "trails.csv", "figure"),
