@@ -80,8 +80,8 @@ double numberAt(const json& object, const char* key) {
 void addChallenges(const json& summary, EgoRun& run) {
   const json challenge = summary.value("challenge", json::object());
   run.challenges = challenge.value("decisions", std::size_t{0});
-  for (const auto& [reason, count] : challenge.value("withdrawn", json::object()).items())
-    run.withdrawn += count.get<std::size_t>();
+  const json withdrawn = challenge.value("withdrawn", json::object());
+  for (const json& count : withdrawn) run.withdrawn += count.get<std::size_t>();
 }
 
 /// Time between ticks [s]: the session's length over its last tick.
