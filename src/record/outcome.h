@@ -11,7 +11,7 @@ namespace cdiff::record {
 /// How a session ended.
 enum class Outcome {
   kPassed,
-  kStruck,     ///< passed, but another vehicle drove into the ego
+  kStruck,     ///< passed, but with contacts that are not the ego's fault or are excused
   kFailed,     ///< a rule was not met
   kNotJudged,  ///< ended by itself, without any rule
   kError,      ///< broke

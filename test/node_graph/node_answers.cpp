@@ -228,7 +228,7 @@ TEST(Recorder, BagHoldsEveryTickInOrder) {
   const std::map<std::string, int> expected = {
       {"/session", 1},       {"/ego/route", 1},    {"/traffic", 4},
       {"/cbv/selection", 2}, {"/ego/control", 2},  {"/cbv_0/control", 2},
-      {"/cbv_0/rollout", 2}, {"/ego/odometry", 2}, {"/tf", 2}};
+      {"/cbv_0/rollout", 2}, {"/ego/odometry", 4}, {"/tf", 2}};
   EXPECT_EQ(counts, expected);
 }
 
