@@ -173,7 +173,8 @@ TEST_F(EvaluateCommand, RefusesWrongInput) {
        "'target_speed'"},
       {"scenarios: [arterial_exit]\nset: [protocol=leaderboard_2_1]\n",
        "key 'protocol' is a group of keys and cannot be 'leaderboard_2_1'; set one of its keys: "
-       "protocol.preset (one of {bench2drive, leaderboard_2_0, leaderboard_2_1, rift_dev10}), "
+       "protocol.preset (one of {any_length, bench2drive, leaderboard_2_0, leaderboard_2_1, "
+       "rift_dev10}), "
        "protocol.time_limit"},
       {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nset: [real_time_factor=1]\n",
        "needs the node graph"}};

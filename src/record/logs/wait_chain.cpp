@@ -61,7 +61,7 @@ class WaitSearch {
     for (const map::Route::Signal& signal : route.signals()) {
       const double ahead = signal.arc_length - front;
       if (ahead < -1.0 || ahead > kToLine || isGreen(signal.id, signal.link)) continue;
-      return {ego.id, Wait::For::kLight, signal.id, junctionAt(route, signal.arc_length + 0.5)};
+      return {ego.id, Wait::For::kLight, signal.id, junctionAhead(route, signal.arc_length)};
     }
     const std::string junction = junctionAhead(route, front);
     if (const Vehicle* other = inJunction(ego, junction)) return behind(ego, *other, junction);
