@@ -128,11 +128,11 @@ TEST(Verdict, WhatAContactWithoutFaultMeansIsTheScenarios) {
   EXPECT_EQ(outcome("by_mode"), Outcome::kFailed);  // naturalistic
 }
 
-metrics::EgoContact contactOf(const std::string& partner, bool at_fault, bool avoidable) {
+metrics::EgoContact contactOf(const std::string& partner, bool at_fault, bool braking_avoids) {
   metrics::EgoContact contact;
   contact.partner = partner;
   contact.ego_at_fault = at_fault;
-  contact.avoidable = avoidable;
+  contact.braking_avoids = braking_avoids;
   return contact;
 }
 
