@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kSteadySpeed = 0.1;  // across the path of a vehicle that keeps its offset [m/s]
 constexpr double kCenterLine = 0.7;   // from the corridor to the line beside the lane [m]
+constexpr double kForgotten = 0.5;    // who was not seen for so long is new [s]
 constexpr double kLeastSpeed = 1.0;   // at which it looks ahead, though it stands [m/s]
 
 }  // namespace
@@ -81,6 +82,8 @@ CarefulDriver::Clock& CarefulDriver::clockOf(const SeenVehicle& vehicle, const C
   if (known == clocks_.end())
     known = clocks_.insert(known, {vehicle.id, time, conflict.to_corridor, -1.0, true});
   Clock& clock = *known;
+  if (time - clock.seen_time > kForgotten)
+    clock = {vehicle.id, time, conflict.to_corridor, -1.0, true};
   const bool nears =
       vehicle.across_speed * vehicle.offset < 0.0 && std::abs(vehicle.across_speed) > kSteadySpeed;
   clock.steady_offset =
@@ -90,13 +93,16 @@ CarefulDriver::Clock& CarefulDriver::clockOf(const SeenVehicle& vehicle, const C
   return clock;
 }
 
-bool CarefulDriver::isRisk(const Conflict& conflict, const SeenVehicle& vehicle, const Clock& clock,
-                           bool nearest) const {
+bool CarefulDriver::isRisk(const OwnMotion& own, const Conflict& conflict,
+                           const SeenVehicle& vehicle, const Clock& clock, bool nearest) const {
   const double look_ahead =
       clock.evidence_since < 0.0 ? options_.look_ahead : 2.0 * options_.look_ahead;
   if (conflict.kind == ConflictKind::kLead) {
     if (!nearest || conflict.gap <= 0.0) return clock.evidence_since >= 0.0 && conflict.gap > 0.0;
     const bool began = clock.evidence_since >= 0.0;
+    const double closing = std::max(0.0, own.speed - vehicle.along_speed);
+    const bool answers = -own.acceleration >= closing * closing / (2.0 * conflict.gap);
+    if (!began && closing > 0.0 && answers) return false;
     const bool brakes = vehicle.acceleration < -options_.lead_deceleration;
     return brakes || meets(conflict, began ? look_ahead : options_.lead_time, 0.0);
   }
@@ -132,9 +138,10 @@ double CarefulDriver::brake(const OwnMotion& own, const std::vector<SeenVehicle>
   }
   bool due = false;
   for (const SeenVehicle& vehicle : seen) {
-    const Conflict conflict = conflictOf(own, speed, vehicle);
+    Conflict conflict = conflictOf(own, speed, vehicle);
+    if (conflict.kind == ConflictKind::kLead) conflict = conflictOf(own, own.speed, vehicle);
     Clock& clock = clockOf(vehicle, conflict, own.time);
-    const bool risk = isRisk(conflict, vehicle, clock, conflict.gap <= nearest);
+    const bool risk = isRisk(own, conflict, vehicle, clock, conflict.gap <= nearest);
     if (!risk) clock.evidence_since = -1.0;
     if (risk && clock.evidence_since < 0.0) clock.evidence_since = own.time;
     due = due || isDue(clock, own.time);

@@ -21,12 +21,12 @@ struct CarefulDriverOptions {
   double ramp_time = 0.6;            ///< until it acts fully [s]
   double deceleration = 7.593;       ///< full: 0.774 g [m/s^2]
   double lateral_deviation = 0.375;  ///< beyond it a vehicle that comes nearer cuts in [m]
-  double lead_time = 2.0;            ///< TTC to a lead that is a risk [s]
-  double lead_deceleration = 5.0;    ///< of a lead that is a risk [m/s^2]
-  double look_ahead = 4.0;           ///< ours: cut-ins, crossings, merges, oncoming [s]
-  double arrival_gap = 1.0;          ///< ours: missing by less than this is a risk [s]
+  double lead_time = 2.5;  ///< TTC to a lead that is a risk [s]; at 2 s it fails from 8.5 m/s on
+  double lead_deceleration = 5.0;  ///< of a lead that is a risk [m/s^2]
+  double look_ahead = 4.0;         ///< ours: cut-ins, crossings, merges, oncoming [s]
+  double arrival_gap = 1.0;        ///< ours: missing by less than this is a risk [s]
   /// Ours: who can still stop before the corridor with this is expected to yield [m/s^2].
-  double yielding_deceleration = 2.0;
+  double yielding_deceleration = 1.5;
   double horizon = 15.0;  ///< within which it must be able to stop [s]
 
   void describe(core::OptionsVisitor& visitor);
@@ -46,7 +46,8 @@ struct CarefulDriverOptions {
 ///  - cut-in: it has come nearer by more than 0.375 m since it last kept its offset, and the two
 ///    meet within `look_ahead` (conflict.h);
 ///  - lead, the nearest vehicle in the corridor (a vehicle behind another is hidden, so that a
-///    cut-out reveals it): TTC at most `lead_time`, or it brakes harder than `lead_deceleration`;
+///    cut-out reveals it): TTC at most `lead_time`, unless the own braking will do, or it brakes
+///    harder than `lead_deceleration`;
 ///  - merge, crossing: they meet within `look_ahead` or miss each other by less than `arrival_gap`,
 ///    and the other can no longer stop before the corridor with `yielding_deceleration`;
 ///  - oncoming: the same, with its box less than 0.7 m from the corridor.
@@ -76,8 +77,8 @@ class CarefulDriver final : public ReferenceDriver {
   };
 
   Clock& clockOf(const SeenVehicle& vehicle, const Conflict& conflict, double time);
-  bool isRisk(const Conflict& conflict, const SeenVehicle& vehicle, const Clock& clock,
-              bool nearest) const;
+  bool isRisk(const OwnMotion& own, const Conflict& conflict, const SeenVehicle& vehicle,
+              const Clock& clock, bool nearest) const;
   bool isDue(const Clock& clock, double time) const;
 
   CarefulDriverOptions options_;

@@ -34,19 +34,18 @@ std::optional<std::size_t> touchedAt(const DrivenPath& path, const OwnMotion& ow
   return std::nullopt;
 }
 
-/// One step with a mean deceleration, or with an acceleration of its own.
-void advance(OwnMotion& own, double acceleration, double top_speed) {
-  const double fastest = std::max(own.speed, top_speed);
-  const double next = std::clamp(own.speed + acceleration * kForeseenStep, 0.0, fastest);
-  const bool stops = next <= 0.0 && acceleration < 0.0;
-  own.arc_length += stops ? own.speed * own.speed / (-2.0 * acceleration)
-                          : 0.5 * (own.speed + next) * kForeseenStep;
-  own.acceleration = (next - own.speed) / kForeseenStep;
-  own.speed = next;
-  own.time += kForeseenStep;
-}
-
 }  // namespace
+
+void advance(OwnMotion& own, double acceleration, double top_speed, double duration) {
+  const double fastest = std::max(own.speed, top_speed);
+  const double next = std::clamp(own.speed + acceleration * duration, 0.0, fastest);
+  const bool stops = next <= 0.0 && acceleration < 0.0;
+  own.arc_length +=
+      stops ? own.speed * own.speed / (-2.0 * acceleration) : 0.5 * (own.speed + next) * duration;
+  own.acceleration = (next - own.speed) / duration;
+  own.speed = next;
+  own.time += duration;
+}
 
 std::vector<SeenVehicle> seeAt(const DrivenPath& path, const std::vector<ForeseenVehicle>& others,
                                std::size_t step, std::vector<std::optional<std::size_t>>& hints) {
@@ -77,7 +76,11 @@ DriveOutcome driveAhead(ReferenceDriver& driver, const OwnMotion& start, const D
     const double braking = driver.brake(own, seeAt(path, others, step, hints), kForeseenStep);
     if (braking > 0.0 && !outcome.brake_time) outcome.brake_time = time;
     const bool accelerates = !outcome.brake_time && time < kHeld;
-    advance(own, braking > 0.0 ? -braking : accelerates ? held : 0.0, terms.top_speed);
+    advance(own,
+            braking > 0.0 ? -braking
+            : accelerates ? held
+                          : 0.0,
+            terms.top_speed, kForeseenStep);
     const auto struck = touchedAt(path, own, others, step + 1, terms.clearance);
     if (!struck) continue;
     outcome.contact_time = time + kForeseenStep;

@@ -37,6 +37,9 @@ struct DriveOutcome {
 /// Step of driveAhead, and between the states of foreseen vehicles [s].
 inline constexpr double kForeseenStep = 0.1;
 
+/// Moves on for `duration` [s] with a mean acceleration [m/s^2], up to `top_speed` and not back.
+void advance(OwnMotion& own, double acceleration, double top_speed, double duration);
+
 /// Drives `driver` from `start` along its path among vehicles whose motion is given. It sees them
 /// as they are at each step. Until it brakes it keeps its speed, and a positive acceleration for
 /// one second; it never drives on before the end.

@@ -34,8 +34,8 @@ ForeseenVehicle moving(const Eigen::Vector2d& place, double heading, double spee
 }
 
 // Bumpers 20.2 m apart at 6 m/s: an unresponsive driver comes within 0.3 m after 3.32 s; the
-// careful one, who sees a TTC below 2 s after 1.4 s and brakes after 1.15 s, so at 2.6 s,
-// needs 11.26 m of the 11.8 m that were left, and stops.
+// careful one, who sees a TTC below 2.5 s after 0.9 s and brakes after 1.15 s, so at 2.1 s,
+// needs 11.26 m of the 14.8 m that were left, and stops.
 TEST(DriveAhead, TellsWhoStrikesAStandingCar) {
   const DrivenPath path(kStraight, 100.0, 80.0);
   const std::vector<ForeseenVehicle> standing{moving({124.7, 0.0}, 0.0, 0.0)};
@@ -51,7 +51,7 @@ TEST(DriveAhead, TellsWhoStrikesAStandingCar) {
       driveAhead(careful, startAt(100.0, 6.0), path, standing, {6.0, 0.0, 8.0});
   EXPECT_FALSE(answered.contact_time.has_value());
   ASSERT_TRUE(answered.brake_time.has_value());
-  EXPECT_NEAR(*answered.brake_time, 1.4 + 1.2, 1e-9);
+  EXPECT_NEAR(*answered.brake_time, 0.9 + 1.2, 1e-9);
   EXPECT_EQ(answered.at_contact.speed, 0.0);
 }
 

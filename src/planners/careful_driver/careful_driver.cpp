@@ -132,7 +132,8 @@ CarefulDriverPlanner::View CarefulDriverPlanner::look(const traffic::TrafficSnap
 void CarefulDriverPlanner::noteLead(const traffic::Vehicle& vehicle, const SeenVehicle& seen,
                                     View& view, Memory& memory) const {
   const auto conflict = reference_driver::conflictOf(view.own, view.own.speed, seen);
-  const bool in_way = conflict.to_corridor < 0.0;
+  constexpr double kMargin = 0.25;  // beside its box [m]
+  const bool in_way = conflict.to_corridor < kMargin;
   const auto known = memory.in_way_since.find(vehicle.id);
   if (known == memory.in_way_since.end()) {
     memory.in_way_since[vehicle.id] = in_way ? -kNever : kNever;
@@ -142,7 +143,9 @@ void CarefulDriverPlanner::noteLead(const traffic::Vehicle& vehicle, const SeenV
     known->second = view.own.time;
   }
   const double since = memory.in_way_since[vehicle.id];
-  const bool counts = view.own.time - since >= options_.evaluation_time + options_.delay;
+  constexpr double kStarting = 1.0;  // [m/s]: it looks before it starts
+  const bool counts = view.own.speed < kStarting ||
+                      view.own.time - since >= options_.evaluation_time + options_.delay;
   if (!in_way || !counts || conflict.gap <= 0.0) return;
   if (view.lead && view.lead->gap <= conflict.gap) return;
   view.lead = Lead{conflict.gap, std::max(0.0, seen.along_speed)};

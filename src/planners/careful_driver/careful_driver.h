@@ -33,7 +33,7 @@ struct CarefulDriverPlannerOptions : reference_driver::CarefulDriverOptions {
 ///  - It keeps the lanes' limits and v*, the time gap of UN R157 to its lead by IDM, and stops at
 ///    lights that are not green, at stop signs and at the end of its route, as PDM-Lite does. Its
 ///    lead is the nearest vehicle in the strip that its box sweeps; one that came in from beside
-///    counts after evaluation time and delay.
+///    counts after evaluation time and delay, or before it starts.
 ///  - Where that is not enough the driver brakes: C, R or FSM (src/reference_driver).
 ///  - PDM-Lite's PID steers; it never evades.
 class CarefulDriverPlanner : public planning::Planner {

