@@ -48,6 +48,7 @@ inline double median(std::vector<double> values) {
 std::filesystem::path dataFolder();
 
 void benchmarkCamera(Figures& figures);
+void benchmarkChallenge(Figures& figures);
 void benchmarkEncoder(Figures& figures);
 void benchmarkDenoiser(Figures& figures);
 void benchmarkLatency(Figures& figures);

@@ -46,9 +46,11 @@ void writeJson(const Figures& figures, const std::string& file) {
 
 int run(const std::string& name, const std::string& json) {
   std::map<std::string, void (*)(Figures&)> known = {
-      {"camera", benchmarkCamera},   {"denoiser", benchmarkDenoiser}, {"encoder", benchmarkEncoder},
-      {"latency", benchmarkLatency}, {"loop", benchmarkLoop},         {"map", benchmarkMap},
-      {"metrics", benchmarkMetrics}, {"planner", benchmarkPlanner}};
+      {"camera", benchmarkCamera},     {"challenge", benchmarkChallenge},
+      {"denoiser", benchmarkDenoiser}, {"encoder", benchmarkEncoder},
+      {"latency", benchmarkLatency},   {"loop", benchmarkLoop},
+      {"map", benchmarkMap},           {"metrics", benchmarkMetrics},
+      {"planner", benchmarkPlanner}};
 #ifdef E2E_CDIFF_WITH_ROS
   known["replay"] = benchmarkReplay;
 #endif

@@ -260,7 +260,7 @@ void addRunCommand(CLI::App& program, int& exit_code) {
   command->add_option("--route", request.route, "Id of a route in that file");
   command->add_option("--network", request.network,
                       "Network: shipped name, *.net.xml, *.xodr or *.osm");
-  command->add_option("--mode", request.mode, "naturalistic or safety_critical");
+  command->add_option("--mode", request.mode, "naturalistic, challenging or safety_critical");
   command->add_option("--ego-planner", request.ego_planner, "Planner of the ego");
   command->add_option("--cbv-planner", request.cbv_planner,
                       "Planner of the CBVs; these can attack: " +

@@ -106,7 +106,8 @@ GuidanceOptions::GuidanceOptions(const GuidanceOptions& other)
       last_step(other.last_step),
       noise_correlation(other.noise_correlation),
       candidates(other.candidates),
-      road_horizon(other.road_horizon) {
+      road_horizon(other.road_horizon),
+      challenge(other.challenge) {
   for (const WeightedObjective& entry : other.objectives) {
     objectives.push_back({entry.name, entry.weight, entry.first_step, entry.last_step,
                           entry.gradient_cap, entry.objective->clone()});
@@ -121,6 +122,7 @@ GuidanceOptions& GuidanceOptions::operator=(const GuidanceOptions& other) {
   noise_correlation = copy.noise_correlation;
   candidates = copy.candidates;
   road_horizon = copy.road_horizon;
+  challenge = copy.challenge;
   return *this;
 }
 
@@ -156,6 +158,11 @@ void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"road_horizon", "s",
                   "Candidates that keep on the road for so long come first; 0: no such rule."},
                  road_horizon, 0.0, kLongestHorizon);
+  visitor.text(
+      {"challenge", "",
+       "Candidates must be answerable by a careful driver in the ego's place, with so much "
+       "to spare; off: no such rule."},
+      challenge, {"off", "easy", "medium", "hard"});
   for (WeightedObjective& entry : objectives) {
     visitor.group({entry.name.c_str(), "", objectiveText(entry.name)}, entry);
   }

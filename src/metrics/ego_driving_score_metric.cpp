@@ -152,8 +152,9 @@ constexpr MeasureDefinition kScoreUnderAttack = {
     "",
     Direction::kHigherIsBetter,
     Subject::kEgo,
-    "Driving score of a session in mode safety_critical; absent in mode naturalistic, so that the "
-    "mean over a batch is that of its attacks.",
+    "Driving score of a session in mode challenging or safety_critical; absent in mode "
+    "naturalistic, "
+    "so that the mean over a batch is that of its attacks.",
     "",
     3,
     false,
@@ -169,7 +170,7 @@ class DrivingScore final : public Metric {
  public:
   explicit DrivingScore(const MetricContext& context)
       : options_(context.options.infractions),
-        attack_(context.options.mode == "safety_critical"),
+        attack_(context.options.mode != "naturalistic"),
         collisions_(options_),
         minimum_speed_(
             context.ego_route.length(),
@@ -196,7 +197,7 @@ class DrivingScore final : public Metric {
     const Measure score =
         numberMeasure(ticks_ == 0 ? 0.0 : drivingScore(completion_percent_, found, rules));
     sink.set(known::kDrivingScore, score);
-    sink.set(kScoreUnderAttack, attack_ ? score : absentMeasure("the mode is not safety_critical"));
+    sink.set(kScoreUnderAttack, attack_ ? score : absentMeasure("the mode is naturalistic"));
     sink.set(known::kPenalty, ticks_ == 0
                                   ? absentMeasure(kNoEgo)
                                   : Measure{infractionPenalty(found, rules), ticks_, {}, {}});

@@ -95,8 +95,9 @@ Markup guidanceSection(const record::SessionResult& result) {
   for (const record::GuidanceSeries& series : log.series()) {
     charts += objectiveChart(result, series, vehicles);
   }
-  const Markup html = guidanceLegend(result, vehicles) +
-                      element("div", {{"class", "charts"}}, charts) + "\n" + guidanceTable(log);
+  Markup html = guidanceLegend(result, vehicles) + element("div", {{"class", "charts"}}, charts) +
+                "\n" + guidanceTable(log);
+  if (log.challenge().decisions > 0) html += challengeTable(log.challenge());
   const auto share = log.trustRegion().mean;
   if (!share) return html;
   return html + pageNote("The trust region limited " + core::formatFixed(100.0 * *share, 1) +

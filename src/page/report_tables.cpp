@@ -177,6 +177,17 @@ Markup guidanceTable(const record::GuidanceLog& log) {
   return table.html();
 }
 
+Markup challengeTable(const record::ChallengeCounts& counts) {
+  HtmlTable table({"Mode challenging", "Reason", "#Number"});
+  table.row({"attacks that a careful driver can answer", "", std::to_string(counts.attacks)});
+  table.row({"decisions under attack", "", std::to_string(counts.attacking)});
+  for (const auto& [reason, count] : counts.withdrawn)
+    table.row({"decisions withdrawn", reason, std::to_string(count)});
+  for (const auto& [reason, count] : counts.refused)
+    table.row({"plans refused", reason, std::to_string(count)});
+  return table.html();
+}
+
 Markup rejectionTable(const record::CbvLog& cbv) {
   if (cbv.rejected().empty()) return pageNote("No candidate was rejected.");
   std::vector<std::pair<std::string, std::size_t>> rows(cbv.rejected().begin(),

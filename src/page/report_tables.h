@@ -22,6 +22,8 @@ core::Markup selectionTable(const record::SessionResult& result);
 /// Distances between plans and what was driven, by CBV.
 core::Markup planTable(const record::PlanLog& plans);
 core::Markup guidanceTable(const record::GuidanceLog& log);
+/// What mode challenging came to: attacks, withdrawals and refused plans by reason.
+core::Markup challengeTable(const record::ChallengeCounts& counts);
 core::Markup rejectionTable(const record::CbvLog& cbv);
 /// Of all vehicles; those of the ego with who is at fault and why.
 core::Markup contactTable(const record::SessionResult& result);

@@ -107,6 +107,15 @@ Json guidanceObject(const GuidanceLog& log) {
   return object;
 }
 
+/// What mode challenging came to.
+Json challengeObject(const ChallengeCounts& counts) {
+  return {{"decisions", counts.decisions},
+          {"attacks", counts.attacks},
+          {"attacking", counts.attacking},
+          {"withdrawn", counts.withdrawn},
+          {"refused", counts.refused}};
+}
+
 Json latencyObject(const std::map<std::string, LatencySummary>& latencies) {
   Json object = Json::object();
   for (const auto& [planner, summary] : latencies) {
@@ -188,6 +197,8 @@ std::string summaryJson(const SessionResult& result) {
   summary["hold_up"] = holdUpObject(result);
   summary["cbv"] = cbvObject(result);
   summary["guidance"] = guidanceObject(result.guidance);
+  if (result.guidance.challenge().decisions > 0)
+    summary["challenge"] = challengeObject(result.guidance.challenge());
   summary["guidance_trust_region_share"] = number(result.guidance.trustRegion().mean);
   summary["metrics"] = Json::object();
   addMeasures(summary["metrics"], "metrics", result.measures);

@@ -143,7 +143,7 @@ class VerdictRules {
     std::string meaning = rules_.contact_without_fault;
     if (meaning == "allowed") return;
     const bool by_mode = meaning == "by_mode";
-    if (by_mode) meaning = mode_ == "safety_critical" ? "struck" : "failed";
+    if (by_mode) meaning = mode_ != "naturalistic" ? "struck" : "failed";
     Check check{"contact_without_fault", CheckOutcome::kPassed, "no vehicle struck the ego"};
     if (!texts.empty()) {
       check.outcome = meaning == "struck" ? CheckOutcome::kStruck : CheckOutcome::kFailed;

@@ -109,7 +109,7 @@ void VerdictOptions::describe(core::OptionsVisitor& visitor) {
       excuse_unavoidable, {"by_mode", "true", "false"});
   visitor.text({"contact_without_fault", "",
                 "What a contact that is not the ego's fault makes of the session; by_mode: failed "
-                "in naturalistic, struck in safety_critical."},
+                "in naturalistic, struck in challenging and safety_critical."},
                contact_without_fault, {"allowed", "struck", "failed", "by_mode"});
   visitor.number({"minimum_driving_score", "%", "Least driving score of the ego."},
                  minimum_driving_score, 0.0, 100.0);
@@ -174,8 +174,11 @@ void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
 }
 
 void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
-  visitor.text({"mode", "", "How CBVs behave: as in everyday traffic, or seeking a collision."},
-               mode, {"naturalistic", "safety_critical"});
+  visitor.text(
+      {"mode", "",
+       "How CBVs behave: as in everyday traffic, attacking as a careful driver could still "
+       "answer, or seeking a collision."},
+      mode, {"naturalistic", "challenging", "safety_critical"});
   visitor.text(
       {"method", "", "Preset of guidance and sampling below all other keys: the paper's, or ours."},
       method, {});
@@ -234,11 +237,11 @@ void ScenarioOptions::validate() const {
   planners::requirePlanner("ego_planner", ego_planner, planners::Role::kEgo);
   planners::requirePlanner("cbv_planner", cbv_planner, planners::Role::kCbv);
   validateCameras();
-  if (mode == "safety_critical" && !planners::canBeGuided(cbv_planner)) {
-    throw UnfitCombination(
-        "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +
-        cbv_planner + "' drives naturalistically only; expected one of " +
-        core::joinText(planners::guidedPlannerNames(), ", "));
+  if (mode != "naturalistic" && !planners::canBeGuided(cbv_planner)) {
+    throw UnfitCombination("key 'mode' is '" + mode +
+                           "', which needs a CBV planner with guidance; cbv_planner '" +
+                           cbv_planner + "' drives naturalistically only; expected one of " +
+                           core::joinText(planners::guidedPlannerNames(), ", "));
   }
   const bool file = demand != "generated" && demand != "none";
   if (file && !core::isFile(demand)) {

@@ -78,7 +78,7 @@ struct ScenarioOptions {
   simulation::DemandOptions traffic;  ///< generated demand
   double begin_time = 0.0;            ///< SUMO's clock at the start, for demand files [s]
   std::string lights = "green";       ///< green | program
-  std::string mode = "naturalistic";  ///< naturalistic | safety_critical
+  std::string mode = "naturalistic";  ///< naturalistic | challenging | safety_critical
   std::string method = "default";     ///< shipped method, whose values lie below all other keys
   std::string ego_planner = planners::kDefaultEgoPlanner;
   std::string cbv_planner = planners::kDefaultCbvPlanner;

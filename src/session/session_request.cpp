@@ -27,6 +27,8 @@ fs::path methodFolder() { return core::shareFolder() / "config" / "methods"; }
 void MethodOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"naturalistic_profile", "", "Guidance profile of CBVs in mode naturalistic."},
                naturalistic_profile, {});
+  visitor.text({"challenging_profile", "", "Guidance profile of CBVs in mode challenging."},
+               challenging_profile, {});
   visitor.text({"safety_critical_profile", "", "Guidance profile of CBVs in mode safety_critical."},
                safety_critical_profile, {});
   visitor.text({"ego_profile", "", "Guidance profile of the ego."}, ego_profile, {});
@@ -34,6 +36,7 @@ void MethodOptions::describe(core::OptionsVisitor& visitor) {
 }
 
 const std::string& MethodOptions::profileOf(const std::string& mode) const {
+  if (mode == "challenging") return challenging_profile;
   return mode == "safety_critical" ? safety_critical_profile : naturalistic_profile;
 }
 

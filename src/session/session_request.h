@@ -18,6 +18,7 @@ namespace cdiff::session {
 /// method, `default` what the package recommends.
 struct MethodOptions {
   std::string naturalistic_profile;     ///< guidance profile of CBVs in mode naturalistic
+  std::string challenging_profile;      ///< in mode challenging
   std::string safety_critical_profile;  ///< and in mode safety_critical
   std::string ego_profile;              ///< of an ego whose planner can be guided
   planning::PlannerOptionsTable planner_options = planners::defaultOptions();

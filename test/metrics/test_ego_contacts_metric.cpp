@@ -113,7 +113,7 @@ TEST(ScoreUnderAttack, IsTheDrivingScoreOfAnAttack) {
   // Half of the route without an infraction.
   EXPECT_NEAR(observed("safety_critical").value.value_or(-1.0), 50.0, 1e-9);
   EXPECT_FALSE(observed("naturalistic").value.has_value());
-  EXPECT_EQ(observed("naturalistic").reason, "the mode is not safety_critical");
+  EXPECT_EQ(observed("naturalistic").reason, "the mode is naturalistic");
 }
 
 }  // namespace

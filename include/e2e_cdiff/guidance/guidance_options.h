@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,9 @@ struct GuidanceOptions {
   /// Of these, the ones come first that keep every corner of the box on the drivable area for so
   /// long [s] when they are driven; 0: J_total alone ranks them.
   double road_horizon = 0.0;
+  /// Which of these is driven by a CBV: off, or by the careful driver in the ego's place that must
+  /// be able to answer it (e2e_cdiff/planning/challenge.h): easy | medium | hard.
+  std::string challenge = "off";
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);
@@ -91,12 +95,25 @@ struct ObjectiveReport {
   std::int64_t dropped = 0;    ///< steps in which it was not finite and left out
 };
 
+/// What the choice of mode challenging was in one decision of one CBV (map frame).
+struct ChallengeReport {
+  std::string state;        ///< "drives", "attacks" or "withdrawn"; empty: not this mode
+  std::string reason;       ///< why it withdrew, or empty
+  std::int64_t chosen = 0;  ///< index of the plan, those of the last plan and of braking included
+  double delta = 0.0;       ///< extra delay with which C still answers the plan [s]
+  /// Last moment to brake, from now on [s]; absent where C need not brake.
+  std::optional<double> last_brake_time;
+  std::optional<traffic::VehicleState> ghost;  ///< of the promise that is kept
+  std::vector<std::string> refusals;           ///< by plan: why it may not be driven, or empty
+};
+
 /// What guidance did in one decision of one vehicle, for people and records.
 struct GuidanceReport {
   std::vector<ObjectiveReport> objectives;  ///< active ones, in the table's order
   std::int64_t candidates = 0;              ///< samples drawn
   std::int64_t chosen = 0;                  ///< index of the one that drives
   double trust_region_share = 0.0;  ///< share of guided steps in which the trust region acted
+  ChallengeReport challenge;        ///< in mode challenging
 };
 
 }  // namespace cdiff::guidance

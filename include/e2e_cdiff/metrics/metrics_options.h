@@ -64,7 +64,7 @@ struct SessionMetricsOptions {
   double completion_percent = 99.0;       ///< the protocol's bound on route completion
   double completion_distance = 10.0;      ///< the protocol's bound on the distance to the goal [m]
   std::string protocol = "rift_dev10";    ///< name of the preset
-  std::string mode = "naturalistic";      ///< naturalistic | safety_critical
+  std::string mode = "naturalistic";      ///< naturalistic | challenging | safety_critical
   InfractionOptions infractions;          ///< its rules for the ego
   double ttc_radius = 60.0;               ///< vehicles considered for 2D-TTC [m]
   double ttc_limit = 3600.0;              ///< a longer 2D-TTC counts as never [s]

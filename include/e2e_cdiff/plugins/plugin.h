@@ -11,7 +11,7 @@
 namespace cdiff::plugins {
 
 /// Rises when a header of include/e2e_cdiff changes so that a compiled plug-in no longer fits.
-inline constexpr int kApiVersion = 4;
+inline constexpr int kApiVersion = 5;
 
 /// What a package of the user's own adds: planners, guidance objectives, metrics.
 ///

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
 #include "e2e_cdiff/planning/perception.h"
 #include "node_graph/messages/perceived_conversions.h"
 #include "node_graph/messages/session_conversions.h"
@@ -152,6 +153,38 @@ visualization_msgs::MarkerArray mapMarkers(const session::SessionSetup& setup) {
   return array;
 }
 
+namespace {
+
+/// Boxes of the standard size: a report does not hold the ego's.
+Marker ghostMarker(const planning::PlannedAction& action) {
+  const guidance::ChallengeReport& report = action.guidance.challenge;
+  traffic::Vehicle ghost;
+  ghost.state = report.ghost.value_or(ghost.state);
+  Marker marker = vehicleMarker(ghost, action.slot);
+  marker.ns = "ghosts";
+  marker.color.r = marker.color.g = marker.color.b = 1.0F;
+  marker.color.a = 0.4F;
+  if (!report.ghost) marker.action = Marker::DELETE;
+  return marker;
+}
+
+Marker challengeMarker(const planning::PlannedAction& action) {
+  const guidance::ChallengeReport& report = action.guidance.challenge;
+  traffic::Vehicle place;
+  if (!action.rollout.empty()) place.state = action.rollout.front().state;
+  place.state.elevation += 2.0 * place.dimensions.height;  // above the label of the vehicle
+  Marker marker = labelMarker(place, action.slot);
+  marker.ns = "challenge";
+  marker.text = report.state;
+  if (!report.reason.empty()) marker.text += ": " + report.reason;
+  if (report.ghost && report.last_brake_time)
+    marker.text += ", brake within " + core::formatFixed(*report.last_brake_time, 1) + " s";
+  if (report.state.empty()) marker.action = Marker::DELETE;
+  return marker;
+}
+
+}  // namespace
+
 MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions, double time) {
   constexpr double kRolloutLift = 0.3;  // [m] above the route
   MarkerArray array;
@@ -167,6 +200,11 @@ MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions, 
           toPoint({position.x(), position.y(), point.state.elevation + kRolloutLift}));
     }
     array.markers.push_back(marker);
+    for (Marker challenge : {ghostMarker(action), challengeMarker(action)}) {
+      challenge.header.stamp = toStamp(time);
+      challenge.lifetime = ros::Duration(kLifetime);
+      if (!action.guidance.challenge.state.empty()) array.markers.push_back(challenge);
+    }
   }
   return array;
 }

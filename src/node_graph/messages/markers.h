@@ -15,7 +15,8 @@ namespace cdiff::node_graph {
 /// session ends.
 visualization_msgs::MarkerArray mapMarkers(const session::SessionSetup& setup);
 
-/// The planned rollouts of CBVs, one line each by slot; lives for 0.5 s of simulated time.
+/// The planned rollouts of CBVs, one line each by slot, and in mode challenging the ghosts of their
+/// promises with the last moment to brake; lives for 0.5 s of simulated time.
 visualization_msgs::MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions,
                                                double time);
 

@@ -135,6 +135,27 @@ msgs::ObjectiveReport toMsg(const guidance::ObjectiveReport& report) {
   return message;
 }
 
+void setChallenge(const guidance::ChallengeReport& report, msgs::VehicleGuidance& message) {
+  message.challenge = report.state;
+  message.challenge_reason = report.reason;
+  message.challenge_delta = report.delta;
+  if (report.last_brake_time) message.last_brake_time.push_back(*report.last_brake_time);
+  if (report.ghost) message.ghost.push_back(node_graph::toMsg(*report.ghost));
+  message.refusals = report.refusals;
+}
+
+guidance::ChallengeReport challengeOf(const msgs::VehicleGuidance& message) {
+  guidance::ChallengeReport report;
+  report.state = message.challenge;
+  report.reason = message.challenge_reason;
+  report.delta = message.challenge_delta;
+  report.chosen = report.state.empty() ? 0 : message.chosen;
+  if (!message.last_brake_time.empty()) report.last_brake_time = message.last_brake_time.front();
+  if (!message.ghost.empty()) report.ghost = node_graph::fromMsg(message.ghost.front());
+  report.refusals = message.refusals;
+  return report;
+}
+
 msgs::VehicleGuidance toGuidanceMsg(const planning::PlannedAction& action) {
   msgs::VehicleGuidance message;
   message.slot = action.slot;
@@ -146,6 +167,7 @@ msgs::VehicleGuidance toGuidanceMsg(const planning::PlannedAction& action) {
   message.trust_region_share = action.guidance.trust_region_share;
   message.state_mismatch = action.state_mismatch;
   message.fault = action.fault;
+  setChallenge(action.guidance.challenge, message);
   return message;
 }
 
@@ -172,6 +194,7 @@ guidance::GuidanceReport fromMsg(const msgs::VehicleGuidance& message) {
   report.candidates = message.candidates;
   report.chosen = message.chosen;
   report.trust_region_share = message.trust_region_share;
+  report.challenge = challengeOf(message);
   return report;
 }
 

@@ -3,6 +3,7 @@
 #include "planners/diffusion/diffusion_planner.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -73,6 +74,8 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       situations_(options_, guidance_, vehicle, context, model_, exact_),
       choice_(guidance_, options.hysteresis, model_.normalizer, exact_),
       workers_(options, model_, situations_.conditionsOnRoute() && options.route_scale != 1.0) {
+  if (guidance_.challenge != "off")
+    challenge_ = std::make_unique<ChallengeChoice>(guidance_, context, choice_, exact_);
   if (options.sampler.mode != "unguided") {
     guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group);
   }
@@ -152,8 +155,14 @@ void DiffusionPlanner::solvePart(std::uint64_t tick, Worker& worker,
   GuidedBatch guided(model_.normalizer, objectives);
   const auto samples = sampler_.sample(denoiser, *branch, requests, &guided);
   const auto candidates = static_cast<std::size_t>(guidance_.candidates);
-  for (std::size_t i = 0; i < solutions.size(); ++i)
-    solutions[i]->chosen = choice_.among(samples, i * candidates, *solutions[i]->situation);
+  for (std::size_t i = 0; i < solutions.size(); ++i) {
+    const DiffusionSituation& situation = *solutions[i]->situation;
+    if (challenge_) {
+      solutions[i]->candidates = choice_.candidatesOf(samples, i * candidates, situation);
+    } else {
+      solutions[i]->chosen = choice_.among(samples, i * candidates, situation);
+    }
+  }
 }
 
 planning::PlannedAction DiffusionPlanner::actionOf(const planning::PlanningTask& task,
@@ -223,9 +232,15 @@ std::vector<planning::PlannedAction> DiffusionPlanner::plan(
   }
   solve(snapshot.tick, cold);
   solve(snapshot.tick, warm);
+  if (challenge_) challenge_->startDecision(snapshot);
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    Solution& solution = solutions[i];
+    if (challenge_) {
+      solution.chosen = challenge_->choose(snapshot.tick, vehicles[i], *solution.situation,
+                                           std::move(solution.candidates));
+    }
     const auto index = static_cast<std::size_t>(vehicles[i].task - tasks.data());
-    actions[index] = conclude(snapshot.tick, vehicles[i], solutions[i].chosen);
+    actions[index] = conclude(snapshot.tick, vehicles[i], solution.chosen);
   }
   return actions;
 }

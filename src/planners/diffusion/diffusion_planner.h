@@ -12,6 +12,7 @@
 #include "diffusion/sampler.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
 #include "e2e_cdiff/planning/planner_descriptor.h"
+#include "planners/diffusion/challenge_choice.h"
 #include "planners/diffusion/diffusion_memory.h"
 #include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/diffusion_situation.h"
@@ -55,6 +56,7 @@ class DiffusionPlanner : public planning::Planner {
   struct Solution {
     std::unique_ptr<DiffusionSituation> situation;
     ChosenPlan chosen;
+    PlanCandidates candidates;  ///< in mode challenging, where `chosen` comes after all are sampled
   };
 
   std::optional<std::string> faultOf(const planning::PlanningTask& task, std::uint64_t tick,
@@ -87,6 +89,7 @@ class DiffusionPlanner : public planning::Planner {
   SituationMaker situations_;
   PlanChoice choice_;
   DiffusionWorkers workers_;
+  std::unique_ptr<ChallengeChoice> challenge_;  ///< null but in mode challenging
   planning::VehicleMemory<DiffusionMemory> memories_;
 };
 

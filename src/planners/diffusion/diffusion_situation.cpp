@@ -10,6 +10,14 @@
 
 namespace cdiff::planners {
 
+AimedScene::AimedScene(const guidance::GuidanceScene& original, const guidance::OtherMotion& other,
+                       double ahead)
+    : motion(other), scene(original) {
+  for (traffic::VehicleState& state : motion.predicted)
+    state.position += ahead * geometry::direction(state.heading);
+  scene.other = &motion;
+}
+
 SituationMaker::SituationMaker(const DiffusionOptions& options,
                                const guidance::GuidanceOptions& guidance,
                                const dynamics::BicycleModelOptions& vehicle,
@@ -137,6 +145,24 @@ void SituationMaker::setRoute(const PlannedVehicle& vehicle, DiffusionSituation&
                                                    arc_length, task.vehicle->state.pose());
 }
 
+/// One per candidate: of one scene, or of several in turn.
+void SituationMaker::addObjectives(DiffusionSituation& situation) const {
+  std::vector<guidance::TotalObjective> prepared;
+  if (guidance_.challenge != "off" && situation.scene.other != nullptr) {
+    for (const double ahead : {3.0, 6.0, 10.0, 15.0}) {  // [m]
+      situation.aims.push_back(
+          std::make_unique<AimedScene>(situation.scene, situation.other, ahead));
+      prepared.emplace_back(guidance_, situation.aims.back()->scene);
+    }
+  } else {
+    prepared.emplace_back(guidance_, situation.scene);
+  }
+  for (std::int64_t i = 0; i < guidance_.candidates; ++i) {
+    const auto& objective = prepared[static_cast<std::size_t>(i) % prepared.size()];
+    situation.objectives.push_back(std::make_unique<guidance::TotalObjective>(objective));
+  }
+}
+
 std::unique_ptr<DiffusionSituation> SituationMaker::make(const traffic::TrafficSnapshot& snapshot,
                                                          const PlannedVehicle& vehicle) const {
   auto situation = std::make_unique<DiffusionSituation>();
@@ -154,9 +180,7 @@ std::unique_ptr<DiffusionSituation> SituationMaker::make(const traffic::TrafficS
   if (conditions_on_route_) addMotion(snapshot.tick, memory, *situation);
   setOther(snapshot, *situation);
   setWarmStart(snapshot.tick, memory.plan, *situation);
-  const guidance::TotalObjective prepared(guidance_, scene);
-  for (std::int64_t i = 0; i < guidance_.candidates; ++i)
-    situation->objectives.push_back(std::make_unique<guidance::TotalObjective>(prepared));
+  addObjectives(*situation);
   return situation;
 }
 

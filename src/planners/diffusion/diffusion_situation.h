@@ -23,6 +23,18 @@
 
 namespace cdiff::planners {
 
+/// A scene whose other vehicle is expected farther ahead than it will be: what plans aim at in mode
+/// challenging, so that they come before the ego and not into its flank.
+struct AimedScene {
+  AimedScene(const guidance::GuidanceScene& original, const guidance::OtherMotion& other,
+             double ahead);
+  AimedScene(const AimedScene&) = delete;  // its scene refers to its motion
+  AimedScene& operator=(const AimedScene&) = delete;
+
+  guidance::OtherMotion motion;
+  guidance::GuidanceScene scene;
+};
+
 /// What the network and the objectives are given for one vehicle at a decision.
 struct DiffusionSituation {
   DiffusionSituation() = default;
@@ -32,9 +44,10 @@ struct DiffusionSituation {
   const planning::PlanningTask* task = nullptr;
   diffusion::Context context;
   guidance::GuidanceScene scene;
-  guidance::OtherMotion other;                ///< whom collision objectives are about
-  std::optional<traffic::Rollout> previous;   ///< last plan as seen from here, metric
-  std::optional<diffusion::Trajectory> warm;  ///< the same, normalized, where it fits
+  guidance::OtherMotion other;                    ///< whom collision objectives are about
+  std::vector<std::unique_ptr<AimedScene>> aims;  ///< of mode challenging, by candidate in turn
+  std::optional<traffic::Rollout> previous;       ///< last plan as seen from here, metric
+  std::optional<diffusion::Trajectory> warm;      ///< the same, normalized, where it fits
   std::vector<std::unique_ptr<guidance::TotalObjective>> objectives;  ///< one per candidate
 };
 
@@ -82,6 +95,7 @@ class SituationMaker {
   guidance::OtherMotion motionOf(const traffic::Vehicle& near,
                                  const traffic::Vehicle& planned) const;
   void setOther(const traffic::TrafficSnapshot& snapshot, DiffusionSituation& situation) const;
+  void addObjectives(DiffusionSituation& situation) const;
   void setWarmStart(std::uint64_t tick, const std::optional<LastPlan>& last,
                     DiffusionSituation& situation) const;
   /// Rows of a forecast.

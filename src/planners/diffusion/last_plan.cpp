@@ -26,15 +26,19 @@ LastPlan::LastPlan(const traffic::Rollout& plan, std::uint64_t tick,
                    const traffic::VehicleState& start, const map::Route* route)
     : plan_(plan), tick_(tick), start_(start), goal_(goalOf(route)) {}
 
-std::optional<traffic::Rollout> LastPlan::continued(double rows,
-                                                    const dynamics::ActionRollout& dynamics,
-                                                    const traffic::VehicleState& now) const {
+std::optional<traffic::Rollout> LastPlan::continued(
+    double rows, const dynamics::ActionRollout& dynamics, const traffic::VehicleState& now,
+    const std::optional<traffic::ControlAction>& tail) const {
   const auto shift = static_cast<Eigen::Index>(std::llround(rows));
   const bool whole = std::abs(rows - static_cast<double>(shift)) < kRounding;
   if (!whole || shift < 1 || shift > plan_.rows()) return std::nullopt;
   traffic::Rollout moved = plan_;
   for (Eigen::Index row = 0; row < plan_.rows(); ++row)
     moved.row(row) = plan_.row(std::min(row + shift, plan_.rows() - 1));
+  if (tail) {
+    moved.rightCols<traffic::kActionColumns>().bottomRows(shift).rowwise() =
+        Eigen::RowVector3d(tail->throttle, tail->steer, tail->brake);
+  }
   dynamics::makeExecutable(moved);
   dynamics.rollOut(now.speed, moved);
   return moved;

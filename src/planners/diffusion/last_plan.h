@@ -20,10 +20,11 @@ class LastPlan {
            const map::Route* route);
 
   std::uint64_t tick() const { return tick_; }
-  /// The plan without its first `rows` rows, the last action held, as the exact dynamics drives it
-  /// from `now`. nullopt unless `rows` is a whole number from 1 to T.
-  std::optional<traffic::Rollout> continued(double rows, const dynamics::ActionRollout& dynamics,
-                                            const traffic::VehicleState& now) const;
+  /// The plan without its first `rows` rows, the last action or `tail` held, as the exact dynamics
+  /// drives it from `now`. nullopt unless `rows` is a whole number from 1 to T.
+  std::optional<traffic::Rollout> continued(
+      double rows, const dynamics::ActionRollout& dynamics, const traffic::VehicleState& now,
+      const std::optional<traffic::ControlAction>& tail = std::nullopt) const;
   /// Whether the vehicle is where the plan said after `rows` rows (0.5 m, 0.1 rad, 0.5 m/s) and its
   /// route still ends at the same place.
   bool holds(Eigen::Index rows, const traffic::VehicleState& now, const map::Route* route) const;

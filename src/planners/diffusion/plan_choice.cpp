@@ -54,11 +54,11 @@ Rollout PlanChoice::drivenBy(const Rollout& plan, double speed) const {
   return driven;
 }
 
-ChosenPlan PlanChoice::among(const std::vector<diffusion::SampledTrajectory>& samples,
-                             std::size_t first, const DiffusionSituation& situation) const {
-  std::vector<Rollout> plans;
-  std::vector<Rollout> driven;
-  std::vector<guidance::Score> scores;
+PlanCandidates PlanChoice::candidatesOf(const std::vector<diffusion::SampledTrajectory>& samples,
+                                        std::size_t first,
+                                        const DiffusionSituation& situation) const {
+  PlanCandidates candidates;
+  auto& [plans, driven, scores] = candidates;
   const Eigen::Index rows = std::lround(guidance_.road_horizon / traffic::kRolloutStep);
   for (std::size_t i = 0; i < situation.objectives.size(); ++i) {
     plans.push_back(normalizer_.denormalize(samples[first + i].clean));
@@ -66,6 +66,12 @@ ChosenPlan PlanChoice::among(const std::vector<diffusion::SampledTrajectory>& sa
     scores.push_back(situation.objectives[i]->score(plans.back()));
     scores.back().off_road = guidance::rowsOffRoad(situation.scene, driven.back(), rows);
   }
+  return candidates;
+}
+
+ChosenPlan PlanChoice::among(const std::vector<diffusion::SampledTrajectory>& samples,
+                             std::size_t first, const DiffusionSituation& situation) const {
+  const auto [plans, driven, scores] = candidatesOf(samples, first, situation);
   const std::size_t best = choosePlan(plans, scores, situation.previous, hysteresis_);
   ChosenPlan chosen{plans[best], driven[best], situation.objectives[best]->report(plans[best])};
   chosen.report.candidates = guidance_.candidates;

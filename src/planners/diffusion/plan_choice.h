@@ -32,6 +32,13 @@ struct ChosenPlan {
   guidance::GuidanceReport report;
 };
 
+/// The plans of a vehicle that are chosen among, one entry per sample.
+struct PlanCandidates {
+  std::vector<traffic::Rollout> plans;   ///< as sampled
+  std::vector<traffic::Rollout> driven;  ///< what the vehicle does
+  std::vector<guidance::Score> scores;
+};
+
 /// Chooses among the candidates of a vehicle by its objectives, those first that keep on the road
 /// as long as GuidanceOptions::road_horizon asks. References must outlive it.
 class PlanChoice {
@@ -45,10 +52,13 @@ class PlanChoice {
   /// them is.
   ChosenPlan among(const std::vector<diffusion::SampledTrajectory>& samples, std::size_t first,
                    const DiffusionSituation& situation) const;
-
- private:
+  /// These samples as candidates.
+  PlanCandidates candidatesOf(const std::vector<diffusion::SampledTrajectory>& samples,
+                              std::size_t first, const DiffusionSituation& situation) const;
+  /// What the vehicle does with a plan from `speed` [m/s].
   traffic::Rollout drivenBy(const traffic::Rollout& plan, double speed) const;
 
+ private:
   const guidance::GuidanceOptions& guidance_;
   double hysteresis_;
   const diffusion::Normalizer& normalizer_;

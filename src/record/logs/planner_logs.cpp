@@ -102,10 +102,28 @@ std::string latenessText(const std::map<std::string, LateCounts>& counts) {
          " times, full braking " + std::to_string(by_full_brake) + " times";
 }
 
+void GuidanceLog::observeChallenge(const planning::PlannedAction& action) {
+  const guidance::ChallengeReport& report = action.guidance.challenge;
+  if (report.state.empty()) return;
+  ++challenge_.decisions;
+  std::string& last = last_state_[action.vehicle_id];
+  if (report.state == "attacks") {
+    ++challenge_.attacking;
+    if (last != "attacks") ++challenge_.attacks;
+  }
+  if (report.state == "withdrawn")
+    ++challenge_.withdrawn[report.reason.empty() ? "braking is safer" : report.reason];
+  for (const std::string& refusal : report.refusals) {
+    if (!refusal.empty()) ++challenge_.refused[refusal];
+  }
+  last = report.state;
+}
+
 void GuidanceLog::observe(const session::TickRecord& record) {
   if (record.actions == nullptr) return;
   for (const planning::PlannedAction& action : *record.actions) {
     if (action.slot < 0 || action.guidance.objectives.empty()) continue;
+    observeChallenge(action);
     trust_region_shares_.push_back(action.guidance.trust_region_share);
     for (const guidance::ObjectiveReport& report : action.guidance.objectives) {
       seriesOf(report.name).samples.push_back({record.snapshot->time, action.vehicle_id, report});

@@ -99,19 +99,33 @@ struct ObjectiveSummary {
   std::size_t n = 0;         ///< decisions
 };
 
+/// What mode challenging came to over a session.
+struct ChallengeCounts {
+  std::size_t decisions = 0;                     ///< of CBVs
+  std::size_t attacking = 0;                     ///< decisions with a promise
+  std::size_t attacks = 0;                       ///< promises
+  std::map<std::string, std::size_t> withdrawn;  ///< decisions, by reason
+  std::map<std::string, std::size_t> refused;    ///< plans, by reason
+};
+
 /// What guidance did to the plans of CBVs: every objective's report at every decision.
 class GuidanceLog {
  public:
   void observe(const session::TickRecord& record);
   /// In the order in which objectives appeared first.
   const std::vector<GuidanceSeries>& series() const { return series_; }
+  /// Without a decision unless the mode is challenging.
+  const ChallengeCounts& challenge() const { return challenge_; }
   /// Share of guided steps in which the trust region acted, over decisions with guidance.
   SampleSummary trustRegion() const { return summaryOf(trust_region_shares_); }
 
  private:
   GuidanceSeries& seriesOf(const std::string& objective);
   std::vector<GuidanceSeries> series_;
+  void observeChallenge(const planning::PlannedAction& action);
   std::vector<double> trust_region_shares_;
+  ChallengeCounts challenge_;
+  std::map<std::string, std::string> last_state_;  ///< by vehicle
 };
 
 ObjectiveSummary summaryOf(const GuidanceSeries& series);
