@@ -31,6 +31,8 @@ constexpr double kPromisedSpeed = 1.0;  // [m/s]
 constexpr double kGhostTime = 4.0;      // [s]
 constexpr double kSwitchGain = 0.1;     // of delta [s]
 constexpr double kSwitchHold = 0.5;     // between two promises [s]
+constexpr double kCrawlingCbv = 1.0;    // attacks no more [m/s]
+constexpr double kSlowEgo = 0.5;        // has answered [m/s]
 constexpr double kSight = 80.0;         // of the ego [m]
 
 double leastDelay(const std::string& level) {
@@ -123,8 +125,8 @@ std::vector<SeenVehicle> Challenge::Parts::seenCbvs(
   return seen;
 }
 
-/// Over the time since the last decision; it ends when the CBV has passed it, leaves its corridor
-/// or does not come there, or after kGhostTime.
+/// Over the time since the last decision. It ends when the ego has slowed down, when the CBV
+/// crawls, has passed the ghost or leaves its corridor, or after kGhostTime.
 void Challenge::Parts::moveGhost(const std::string& id, const std::vector<SeenVehicle>& seen,
                                  Attack& attack) {
   if (!attack.promised.empty()) attack.promised.erase(attack.promised.begin());
@@ -138,7 +140,8 @@ void Challenge::Parts::moveGhost(const std::string& id, const std::vector<SeenVe
   bool over = own.time - ghost.since > kGhostTime || mine == seen.end();
   if (!over) {
     const auto conflict = conflictOf(ghost.own, ghost.own.speed, *mine);
-    over = conflict.gap < 0.0 || conflict.in_corridor.empty();
+    const bool crawls = std::hypot(mine->along_speed, mine->across_speed) < kCrawlingCbv;
+    over = conflict.gap < 0.0 || conflict.in_corridor.empty() || crawls || own.speed < kSlowEgo;
   }
   if (over) attack.ghost.reset();
 }
@@ -173,6 +176,13 @@ bool Challenge::Parts::keepsPromise(const ChallengePlan& plan, const Attack& att
 
 ChallengeTrial Challenge::Parts::examine(const traffic::Vehicle& cbv, const ChallengePlan& plan,
                                          const Attack& attack) const {
+  const bool finite = std::all_of(plan.states.begin(), plan.states.end(), isFinite);
+  if (!finite) {
+    ChallengeTrial lost;
+    lost.refusal = "it is not finite";
+    lost.margin = 0.0;
+    return lost;
+  }
   ChallengeTrial trial = course->examine(cbv, plan);
   if (own.speed <= kStandingEgo) trial.hit_time.reset();
   if (plan.only_to_hit && !trial.refusal.empty()) {

@@ -98,8 +98,8 @@ bool CarefulDriver::isRisk(const OwnMotion& own, const Conflict& conflict,
   const double look_ahead =
       clock.evidence_since < 0.0 ? options_.look_ahead : 2.0 * options_.look_ahead;
   if (conflict.kind == ConflictKind::kLead) {
-    if (!nearest || conflict.gap <= 0.0) return clock.evidence_since >= 0.0 && conflict.gap > 0.0;
     const bool began = clock.evidence_since >= 0.0;
+    if (!nearest || !conflict.ahead) return began && conflict.ahead;
     const double closing = std::max(0.0, own.speed - vehicle.along_speed);
     const bool answers = -own.acceleration >= closing * closing / (2.0 * conflict.gap);
     if (!began && closing > 0.0 && answers) return false;
@@ -134,7 +134,7 @@ double CarefulDriver::brake(const OwnMotion& own, const std::vector<SeenVehicle>
   double nearest = std::numeric_limits<double>::infinity();
   for (const SeenVehicle& vehicle : seen) {
     const Conflict conflict = conflictOf(own, speed, vehicle);
-    if (conflict.to_corridor < 0.0 && conflict.gap > 0.0) nearest = std::min(nearest, conflict.gap);
+    if (conflict.to_corridor < 0.0 && conflict.ahead) nearest = std::min(nearest, conflict.gap);
   }
   bool due = false;
   for (const SeenVehicle& vehicle : seen) {

@@ -45,6 +45,7 @@ Conflict conflictOf(const OwnMotion& own, double speed, const SeenVehicle& other
   const double along = 0.5 * own.dimensions.length + other.half_along;
   const double ahead = other.arc_length - own.arc_length;
   Conflict conflict;
+  conflict.ahead = ahead > 0.0;
   conflict.to_corridor = std::abs(offset) - across;
   conflict.kind = kindOf(other, conflict.to_corridor < 0.0);
   conflict.in_corridor = within(offset, other.across_speed, across);

@@ -37,6 +37,7 @@ struct Conflict {
   TimeSpan in_corridor;  ///< the other's box lies in the corridor
   TimeSpan beside;       ///< the two boxes are level with each other along the path
   double gap = 0.0;      ///< between the boxes along the path, positive: the other is ahead [m]
+  bool ahead = false;    ///< its center is farther along the path
   /// Deceleration that stops the other before the corridor [m/s^2]; infinite where it is in there.
   double stops_before = std::numeric_limits<double>::infinity();
   double to_corridor = 0.0;  ///< across the path to the corridor [m]; negative: inside

@@ -180,6 +180,7 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
       {"ablation_collision", {"collision_avoidance"}},
       {"ablation_drivable", {"drivable_area"}},
       {"ablation_speed", {"speed"}},
+      {"challenging", {"speed", "drivable_area", "collision_seeking", "traffic_avoidance"}},
       {"naturalistic",
        {"speed", "drivable_area", "collision_avoidance", "traffic_avoidance", "yielding",
         "comfort"}},
@@ -195,7 +196,10 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
     names.push_back(name);
     EXPECT_EQ(activeOf(loadProfile(name)), active) << name;
     EXPECT_EQ(loadProfile(name).noise_correlation, name == "naturalistic" ? 1.0 : 0.0) << name;
-    EXPECT_EQ(loadProfile(name).candidates, name == "safety_critical" ? 8 : 1) << name;
+    EXPECT_EQ(loadProfile(name).candidates,
+              name == "safety_critical" || name == "challenging" ? 8 : 1)
+        << name;
+    EXPECT_EQ(loadProfile(name).challenge, name == "challenging" ? "medium" : "off") << name;
   }
   EXPECT_EQ(shippedProfiles(), names);
 }
@@ -205,12 +209,14 @@ TEST(Profiles, NoiseCorrelationAndCandidatesAreCopiedAndInRange) {
   options.noise_correlation = 0.5;
   options.candidates = 3;
   options.road_horizon = 1.5;
+  options.challenge = "hard";
   GuidanceOptions assigned;
   assigned = options;
   for (const GuidanceOptions& copy : {GuidanceOptions(options), assigned}) {
     EXPECT_EQ(copy.noise_correlation, 0.5);
     EXPECT_EQ(copy.candidates, 3);
     EXPECT_EQ(copy.road_horizon, 1.5);
+    EXPECT_EQ(copy.challenge, "hard");
     EXPECT_NO_THROW(copy.validate());
   }
   for (const double bad : {-0.1, 1.1, std::nan("")}) {

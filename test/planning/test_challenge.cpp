@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -115,6 +116,18 @@ TEST_F(ChallengeTest, NeverStrikesFromBehindOrAStandingEgo) {
   const auto standing = decide(other, vehicleAt("cbv", {101.0, -25.0}, kNorth, 10.0), 0.0);
   EXPECT_EQ(standing.refusals[0], "the ego stands");
   EXPECT_FALSE(standing.ghost.has_value());
+}
+
+TEST_F(ChallengeTest, RefusesAPlanThatIsNotFinite) {
+  Challenge challenge(context_, "hard");
+  traffic::TrafficSnapshot snapshot;
+  snapshot.vehicles = {vehicleAt("ego", {100.0, 0.0}, 0.0, 8.0), crossing_};
+  challenge.startDecision(snapshot);
+  ChallengePlan lost = planOf(crossing_);
+  lost.states[5].position.x() = std::numeric_limits<double>::quiet_NaN();
+  const auto report = challenge.choose(crossing_, {lost, planOf(crossing_, 6.0)});
+  EXPECT_EQ(report.refusals[0], "it is not finite");
+  EXPECT_EQ(report.chosen, 1);
 }
 
 // The ego does not react: soon C in its place could no longer answer, but the ghost has braked.

@@ -62,9 +62,9 @@ TEST(PluginLoader, WhatThrowsInPlanBrakesAndIsRecorded) {
 }
 
 TEST(PluginLoader, NamesWhatIsWrongAndWhoMustAct) {
-  expectIn("was built for version 3 of the API; this is version 4: build it again",
+  expectIn("was built for version 4 of the API; this is version 5: build it again",
            refusalOf("older_version"));
-  expectIn("was built for version 5 of the API; this is version 4: build it again",
+  expectIn("was built for version 6 of the API; this is version 5: build it again",
            refusalOf("newer_version"));
   expectIn("throws in its constructor: no license found; its author must mend it",
            refusalOf("throwing_constructor"));

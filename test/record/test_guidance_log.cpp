@@ -55,6 +55,38 @@ TEST(GuidanceLog, WhatIsNotFiniteIsLeftOutOfTheMean) {
   EXPECT_EQ(summaryOf(log.series()[0]).n, 2u);
 }
 
+TEST(GuidanceLog, CountsAttacksWithdrawalsAndRefusals) {
+  GuidanceLog log;
+  EXPECT_EQ(log.challenge().decisions, 0u);
+  const auto decideState = [&](const std::string& state, const std::string& reason,
+                               const std::vector<std::string>& refusals) {
+    traffic::TrafficSnapshot snapshot;
+    std::vector<planning::PlannedAction> actions(1);
+    actions[0].slot = 0;
+    actions[0].vehicle_id = "v0";
+    actions[0].guidance.objectives = {{"speed", 1.0, 1.0, 0.0, 0.0, 0}};
+    actions[0].guidance.challenge.state = state;
+    actions[0].guidance.challenge.reason = reason;
+    actions[0].guidance.challenge.refusals = refusals;
+    session::TickRecord record;
+    record.snapshot = &snapshot;
+    record.actions = &actions;
+    log.observe(record);
+  };
+  decideState("drives", "", {"from behind", ""});
+  decideState("attacks", "", {"", ""});
+  decideState("attacks", "", {"", "from behind"});
+  decideState("withdrawn", "the ego stands", {"the ego stands", "the ego stands"});
+  decideState("attacks", "", {""});
+  const ChallengeCounts& counts = log.challenge();
+  EXPECT_EQ(counts.decisions, 5u);
+  EXPECT_EQ(counts.attacks, 2u);
+  EXPECT_EQ(counts.attacking, 3u);
+  EXPECT_EQ(counts.withdrawn, (std::map<std::string, std::size_t>{{"the ego stands", 1}}));
+  EXPECT_EQ(counts.refused,
+            (std::map<std::string, std::size_t>{{"from behind", 2}, {"the ego stands", 2}}));
+}
+
 TEST(GuidanceLog, TheEgoAndUnguidedPlansDoNotCount) {
   GuidanceLog log;
   decide(log, 0.0, -1, {{"speed", 1.0, 1.0, 0.0, 0.0, 0}});

@@ -146,7 +146,7 @@ void CarefulDriverPlanner::noteLead(const traffic::Vehicle& vehicle, const SeenV
   constexpr double kStarting = 1.0;  // [m/s]: it looks before it starts
   const bool counts = view.own.speed < kStarting ||
                       view.own.time - since >= options_.evaluation_time + options_.delay;
-  if (!in_way || !counts || conflict.gap <= 0.0) return;
+  if (!in_way || !counts || !conflict.ahead) return;
   if (view.lead && view.lead->gap <= conflict.gap) return;
   view.lead = Lead{conflict.gap, std::max(0.0, seen.along_speed)};
 }

@@ -15,17 +15,28 @@ using traffic::Rollout;
 
 constexpr traffic::ControlAction kBraking{0.0, 0.0, 0.75};  // 6 m/s^2
 
-/// How a plan comes before the ego and slows down there: it brakes evenly from a row on.
+/// How a plan comes before the ego and slows down there: it brakes evenly from a row on, to a speed
+/// that it keeps.
 struct Retiming {
   Eigen::Index row;
   double brake;
 };
-constexpr Retiming kRetimings[] = {{4, 0.25}, {10, 0.5}, {16, 0.75}};
+constexpr Retiming kRetimings[] = {{0, 0.75}, {4, 0.25}, {10, 0.5}, {16, 0.75}};
+constexpr double kKeptSpeed = 3.0;    // [m/s]
+constexpr double kFullBraking = 8.0;  // [m/s^2]
 
-Rollout brakingFrom(Rollout plan, const Retiming& retiming) {
+/// `speed`: now [m/s]; `driven`: what the vehicle does with the plan.
+Rollout retimed(Rollout plan, const Rollout& driven, const Retiming& retiming, double speed) {
+  const double before =
+      retiming.row == 0 ? speed : driven(retiming.row - 1, traffic::kRolloutSpeed);
+  const double loss = retiming.brake * kFullBraking * traffic::kRolloutStep;  // a row [m/s]
+  const auto braking = static_cast<Eigen::Index>(std::max(0.0, (before - kKeptSpeed) / loss));
   const Eigen::Index rows = std::max<Eigen::Index>(0, plan.rows() - retiming.row);
   plan.bottomRows(rows).col(traffic::kRolloutThrottle).setZero();
-  plan.bottomRows(rows).col(traffic::kRolloutBrake).setConstant(retiming.brake);
+  plan.bottomRows(rows).col(traffic::kRolloutBrake).setZero();
+  plan.middleRows(retiming.row, std::min(braking, rows))
+      .col(traffic::kRolloutBrake)
+      .setConstant(retiming.brake);
   return plan;
 }
 
@@ -65,11 +76,11 @@ ChosenPlan ChallengeChoice::choose(std::uint64_t tick, const PlannedVehicle& veh
   for (std::size_t i = 0; i < sampled; ++i) {
     candidates.scores[i].value = situation.objectives.front()->score(candidates.plans[i]).value;
     for (const Retiming& retiming : kRetimings) {
-      const Rollout later = brakingFrom(candidates.plans[i], retiming);
+      const Rollout later = retimed(candidates.plans[i], candidates.driven[i], retiming, now.speed);
       add(choice_.drivenBy(later, now.speed), candidates.scores[i].value, candidates);
     }
   }
-  const std::size_t retimed = candidates.plans.size();
+  const std::size_t varied = candidates.plans.size();
   Rollout braking = candidates.plans.front();
   braking.rightCols<traffic::kActionColumns>().rowwise() =
       Eigen::RowVector3d(kBraking.throttle, kBraking.steer, kBraking.brake);
@@ -79,8 +90,8 @@ ChosenPlan ChallengeChoice::choose(std::uint64_t tick, const PlannedVehicle& veh
   std::vector<planning::ChallengePlan> plans;
   for (std::size_t i = 0; i < candidates.plans.size(); ++i)
     plans.push_back(planOf(now, candidates.driven[i], candidates.scores[i].value));
-  for (std::size_t i = sampled; i < retimed; ++i) plans[i].only_to_hit = true;
-  plans[retimed].brakes = true;
+  for (std::size_t i = sampled; i < varied; ++i) plans[i].only_to_hit = true;
+  plans[varied].brakes = true;
   if (kept) plans.back().kept = true;
   const guidance::ChallengeReport report = challenge_.choose(*vehicle.task->vehicle, plans);
   const auto best = static_cast<std::size_t>(report.chosen);
