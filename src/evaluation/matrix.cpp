@@ -49,7 +49,8 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
                 bench2drive);
   visitor.list({"ego_planners", "", "Planners of the ego; empty: the scenario's."}, ego_planners);
   visitor.list({"cbv_planners", "", "Planners of the CBVs; empty: the scenario's."}, cbv_planners);
-  visitor.list({"modes", "", "naturalistic, challenging, safety_critical; empty: the scenario's."}, modes);
+  visitor.list({"modes", "", "naturalistic, challenging, safety_critical; empty: the scenario's."},
+               modes);
   visitor.list({"methods", "", "Shipped methods; empty: the scenario's."}, methods);
   visitor.list(
       {"guidance_profiles", "", "Guidance of the CBVs, shipped or a file; empty: the mode's."},

@@ -37,7 +37,7 @@ class UnresponsiveDriver final : public ReferenceDriver {
 /// The pedal on its way down: deceleration grows evenly up to the demand, and ends at once.
 class BrakeRamp {
  public:
-  /// Mean deceleration over `duration` with `jerk` [m/s^3] towards `demand` [m/s^2]. A vehicle that
+  /// Mean deceleration over `duration` with `jerk` [m/s^3] toward `demand` [m/s^2]. A vehicle that
   /// did not brake as this pedal asked was driven by another: the pedal goes down anew.
   double press(double demand, double jerk, double duration, const OwnMotion& own);
   void release() { level_ = 0.0; }
