@@ -252,7 +252,7 @@ TEST(GuidanceConversions, ReportComesBackBitByBit) {
   action.vehicle_id = "bg_7";
   action.fault = "why";
   action.state_mismatch = 1.0 / 3.0;
-  action.guidance = {{{"speed", 0.1, 0.2, 1.0 / 7.0, 0.3, 4}}, 8, 5, 0.7};
+  action.guidance = {{{"speed", 0.1, 0.2, 1.0 / 7.0, 0.3, 4}}, 8, 5, 0.7, {}};
   const msgs::GuidanceReport message = toGuidanceMsg({action}, test::sampleSnapshot(4));
   EXPECT_EQ(message.tick, 4U);
   ASSERT_EQ(message.vehicles.size(), 1U);
