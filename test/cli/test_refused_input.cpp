@@ -155,7 +155,8 @@ TEST_F(RefusedInput, APlannerInARoleThatItDoesNotHave) {
       3);
   expectOutput(
       "key 'ego_planner' is 'ppo', a planner that does not drive the ego; expected one of "
-      "constant, diffusion, pdm_lite, plant, pluto, rift, two_stage_pid, uniad_mini, "
+      "careful_driver, constant, diffusion, pdm_lite, plant, pluto, rift, two_stage_pid, "
+      "uniad_mini, "
       "vad_mini, external");
   EXPECT_FALSE(fs::exists(folder("results")));
 }

@@ -139,7 +139,7 @@ TEST(Plan, RefusesAPlannerInARoleThatItDoesNotHave) {
     const std::string role = planner.drives_cbv ? "the ego" : "CBVs";
     expectIn("matrix.yaml, scenario arterial_exit: ", errorOf(matrix));
     expectIn("'" + planner.name + "', a planner that does not drive " + role +
-                 "; expected one of constant, diffusion, pdm_lite, ",
+                 "; expected one of careful_driver, constant, diffusion, pdm_lite, ",
              errorOf(matrix));
   }
   EXPECT_GT(refused, 0U);
