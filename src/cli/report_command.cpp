@@ -178,18 +178,14 @@ int report(const ReportArguments& arguments) {
                            {!arguments.training.empty(), "--training DIR", drawTraining},
                            {!arguments.pedals.empty(), "--pedals DIR", countPedals},
                            {!arguments.ego_ranking.empty(), "--ego-ranking DIR", rankEgos}};
-  const Asked* asked = nullptr;
   std::vector<std::string> names;
+  std::vector<const Asked*> asked;
   for (const Asked& option : options) {
     names.emplace_back(option.option);
-    if (!option.given) continue;
-    if (asked != nullptr)
-      throw InputError(std::string(asked->option) + " and " + option.option +
-                       " exclude each other");
-    asked = &option;
+    if (option.given) asked.push_back(&option);
   }
-  if (asked == nullptr) throw InputError("give one of " + core::joinText(names, ", "));
-  return asked->answer(arguments);
+  if (asked.size() != 1) throw InputError("give one of " + core::joinText(names, ", "));
+  return asked.front()->answer(arguments);
 }
 
 }  // namespace

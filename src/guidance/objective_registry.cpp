@@ -42,8 +42,9 @@ std::vector<ObjectiveDescriptor> packageObjectives() {
 
 using Registry = core::Registry<ObjectiveDescriptor>;
 
+/// Never destroyed: it holds functions of plug-ins, whose libraries may be unloaded before.
 Registry& table() {
-  static Registry objectives("guidance objective", packageObjectives());
+  static Registry& objectives = *new Registry("guidance objective", packageObjectives());
   return objectives;
 }
 

@@ -106,8 +106,9 @@ class Registry {
   std::deque<std::string> places_;  ///< texts of places that were filled in
 };
 
+/// Never destroyed: it holds functions of plug-ins, whose libraries may be unloaded before.
 Registry& registry() {
-  static Registry instance;
+  static Registry& instance = *new Registry;
   return instance;
 }
 

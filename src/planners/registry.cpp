@@ -47,15 +47,16 @@ std::string faultOf(const PlannerDescriptor& descriptor) {
 
 using Registry = core::Registry<PlannerDescriptor>;
 
+/// Never destroyed: it holds functions of plug-ins, whose libraries may be unloaded before.
 Registry& table() {
-  static Registry planners("planner", packagePlanners());
+  static Registry& planners = *new Registry("planner", packagePlanners());
   return planners;
 }
 
 /// The descriptor of "NAME+NAME...", made once; nullptr where one is unknown.
 const PlannerDescriptor* findBySlot(const std::string& joined) {
   static std::mutex mutex;
-  static std::map<std::string, PlannerDescriptor> known;
+  static auto& known = *new std::map<std::string, PlannerDescriptor>;  // as table()
   const std::vector<std::string> names = planningMembers(joined);
   if (names.size() < 2 || core::joinText(names, "+") != joined) return nullptr;
   std::vector<const PlannerDescriptor*> members;

@@ -189,7 +189,7 @@ TEST_F(BatchRobustness, RefusesAnUnknownPlannerAndWrongReportArguments) {
   expectOutput("key 'cbv_planner' is 'difusion', an unknown planner; did you mean 'diffusion'");
   EXPECT_FALSE(fs::exists(folder("results")));
   EXPECT_EQ(cdiff({"report"}), 3);
-  expectOutput("give one of --compare A B, --tables DIR, --training DIR and --pedals DIR");
+  expectOutput("give one of --compare A B, --doses DIR, ");
   EXPECT_EQ(cdiff({"report", "--tables", folder("nothing")}), 3);
   expectOutput("it has no matrix.yaml");
 }

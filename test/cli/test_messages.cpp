@@ -78,9 +78,9 @@ TEST_F(Messages, SourcingPutsCdiffInPathAndLeavesSumoHomeAlone) {
 TEST_F(Messages, AModeThatIsNoneIsExplained) {
   EXPECT_EQ(cdiff({"run", "roundabout_cross", "--mode", "agressive"}), 3);
   expectOutput(
-      "key 'mode' is 'agressive'; expected one of {naturalistic, safety_critical}: How CBVs "
-      "behave: "
-      "as in everyday traffic, or seeking a collision.");
+      "key 'mode' is 'agressive'; expected one of {naturalistic, challenging, safety_critical}: "
+      "How CBVs behave: as in everyday traffic, attacking as a careful driver could still answer, "
+      "or seeking a collision.");
 }
 
 TEST_F(Messages, ALoopOfSymbolicLinksIsNamed) {

@@ -11,8 +11,8 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/executor.h"
+#include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
