@@ -207,12 +207,10 @@ fs::path writeTrainingPage(const fs::path& folder) {
   return page;
 }
 
-void addReportCommand(CLI::App& program, int& exit_code) {
-  auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command = program.add_subcommand(
-      "report",
-      "Compare evaluations run by run; make their tables again; draw a training; count pedals; "
-      "rank egos");
+namespace {
+
+/// What may be asked for, one at a time.
+void addQuestions(CLI::App* command, const std::shared_ptr<ReportArguments>& arguments) {
   command
       ->add_option("--compare", arguments->folders,
                    "Result folders A and B of `cdiff evaluate`, or one with --factor")
@@ -235,6 +233,17 @@ void addReportCommand(CLI::App& program, int& exit_code) {
                    "Rank the egos of these result folders of `cdiff evaluate`; also of folders "
                    "that hold a user's sessions. Writes ego_ranking.html into the first")
       ->expected(1, 100);
+}
+
+}  // namespace
+
+void addReportCommand(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command = program.add_subcommand(
+      "report",
+      "Compare evaluations run by run; make their tables again; draw a training; count pedals; "
+      "rank egos");
+  addQuestions(command, arguments);
   command->add_option("--factor", arguments->factor, "Compare the levels of this factor");
   command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
   command->add_option("--figure", arguments->measures, "Only this measure; may be repeated")

@@ -3,16 +3,15 @@
 #include "evaluation/dose_response.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/comparison/comparison.h"
+#include "metrics/formulas/rank_correlation.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -110,7 +109,7 @@ std::optional<double> correlationOf(const std::vector<double>& doses,
     if (!value) return std::nullopt;
     responses.push_back(*value);
   }
-  return spearman(doses, responses);
+  return metrics::rankCorrelation(doses, responses);
 }
 
 DoseResponse responseOf(const Axis& axis, const std::string& measure, RouteBootstrap& bootstrap) {
@@ -132,21 +131,6 @@ DoseResponse responseOf(const Axis& axis, const std::string& measure, RouteBoots
   response.rank_correlation = correlation(each.data());
   response.interval = bootstrap.interval(routes.size(), correlation);
   return response;
-}
-
-/// Ranks from 1 on; equal values share the mean of their ranks.
-std::vector<double> ranksOf(const std::vector<double>& values) {
-  std::vector<double> ranks;
-  for (const double value : values) {
-    double below = 0.0;
-    double equal = 0.0;
-    for (const double other : values) {
-      below += other < value ? 1.0 : 0.0;
-      equal += other == value ? 1.0 : 0.0;
-    }
-    ranks.push_back(below + (equal + 1.0) / 2.0);
-  }
-  return ranks;
 }
 
 std::string correlationText(const DoseResponse& response) {
@@ -177,23 +161,6 @@ std::string axisMarkdown(const DoseResponse* first, const DoseResponse* end) {
 }
 
 }  // namespace
-
-std::optional<double> spearman(const std::vector<double>& a, const std::vector<double>& b) {
-  if (a.size() != b.size()) throw std::invalid_argument("spearman: sides of different lengths");
-  const std::vector<double> ranks_a = ranksOf(a);
-  const std::vector<double> ranks_b = ranksOf(b);
-  const double mean = (static_cast<double>(a.size()) + 1.0) / 2.0;
-  double product = 0.0;
-  double square_a = 0.0;
-  double square_b = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    product += (ranks_a[i] - mean) * (ranks_b[i] - mean);
-    square_a += (ranks_a[i] - mean) * (ranks_a[i] - mean);
-    square_b += (ranks_b[i] - mean) * (ranks_b[i] - mean);
-  }
-  if (square_a <= 0.0 || square_b <= 0.0) return std::nullopt;
-  return product / std::sqrt(square_a * square_b);
-}
 
 std::vector<DoseResponse> doseResponses(const std::vector<RunRecord>& records,
                                         const std::vector<std::string>& measures) {

@@ -26,15 +26,11 @@ struct DoseResponse {
   std::string measure;
   std::size_t routes = 0;   ///< driven at every dose
   std::vector<Dose> doses;  ///< in ascending order; at least three
-  /// Spearman's rank correlation of doses and pooled responses, -1 to 1; nullopt where all
-  /// responses are equal or one is unknown.
+  /// Rank correlation of doses and pooled responses; nullopt where all responses are equal or one
+  /// is unknown.
   std::optional<double> rank_correlation;
   std::optional<Interval> interval;  ///< bootstrap by routes, the same routes at every dose
 };
-
-/// Spearman's rank correlation (mean ranks for equal values); nullopt below two pairs and where all
-/// of one side are equal. Throws std::invalid_argument for sides of different lengths.
-std::optional<double> spearman(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Each axis with each measure, in the order of the records and of `measures`. Only routes that are
 /// complete at every dose count. Throws InputError for runs of several systems, for an unknown

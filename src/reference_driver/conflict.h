@@ -23,7 +23,8 @@ enum class ConflictKind {
 /// "lead", "cut_in", "merge", "crossing" or "oncoming".
 const char* toText(ConflictKind kind);
 
-/// From when to when something holds [s] from now; empty where the end is not after the begin.
+/// The times, counted from now [s], between which something holds. It is empty where the end is not
+/// after the begin.
 struct TimeSpan {
   double begin = 0.0;
   double end = -1.0;

@@ -26,7 +26,7 @@ struct DriveTerms {
   double top_speed = 8.0;  ///< it accelerates no further [m/s]
 };
 
-/// What becomes of a driver.
+/// How a driver's course ends: with a contact or without.
 struct DriveOutcome {
   std::optional<double> contact_time;  ///< first [s] from now
   std::size_t struck = 0;              ///< index of the vehicle

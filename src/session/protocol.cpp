@@ -31,7 +31,9 @@ using traffic::SessionStatus;
 void ProtocolOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"preset", "", "Rules whose values the keys below have unless given."}, preset,
                shippedProtocols());
-  visitor.number({"time_limit", "s", "Simulated time after which the session has timed out."},
+  visitor.number({"time_limit", "s",
+                  "Simulated time after which the session has timed out; progress adds to it where "
+                  "time_limit_speed_percent is above 0."},
                  time_limit, 0.1, 86400.0);
   visitor.number({"time_limit_speed_percent", "%",
                   "The time limit grows by the time that the progress takes at this share of the "

@@ -131,7 +131,7 @@ void VerdictOptions::describe(core::OptionsVisitor& visitor) {
 void EgoOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"command", "", "How an external ego commands (docs/test_your_ego.md)."}, command,
                {"control", "ackermann", "trajectory", "cmd_vel"});
-  visitor.number({"object_range", "m", "Distance up to which the ego is told of vehicles."},
+  visitor.number({"object_range", "m", "The ego hears of vehicles up to this distance."},
                  object_range, 1.0, 1000.0);
   visitor.group({"laser", "", "2D laser scanner of the ego."}, laser);
   visitor.group({"lidar", "", "Sparse lidar of the ego."}, lidar);

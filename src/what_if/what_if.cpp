@@ -163,12 +163,18 @@ Answer answer(const RecordedRun& run, const session::SessionSetup& setup, const 
 
 namespace {
 
-/// "taking over 1.4 s before the contact avoids it".
-std::string latestText(const LoopAnswer& loop, double earliest) {
+/// "taking over 1.4 s before the contact avoids it", and that the take-over that was asked for does
+/// not, where one at another time does.
+std::string latestText(const Answer& answer) {
+  const LoopAnswer& loop = answer.closed;
   if (!loop.latest)
-    return "does not avoid it, not even taking over " + core::formatFixed(earliest, 1) +
+    return "does not avoid it, not even taking over " + core::formatFixed(*answer.earliest, 1) +
            " s before";
-  return "taking over " + core::formatFixed(*loop.latest, 1) + " s before the contact avoids it";
+  const std::string text =
+      "taking over " + core::formatFixed(*loop.latest, 1) + " s before the contact avoids it";
+  return loop.avoids() ? text
+                       : text + ", taking over " + core::formatNumber(answer.question.before) +
+                             " s before does not";
 }
 
 /// "clear for 8 s", "contact with a at 3.20 s".
@@ -195,7 +201,7 @@ std::string answerText(const Answer& answer) {
   }
   return "contact " + std::to_string(contact->number) + " (" + contact->partner + ", " +
          core::formatFixed(contact->seconds, 2) + " s): " + answer.driver + " " +
-         latestText(answer.closed, *answer.earliest) + "; others as recorded: " +
+         latestText(answer) + "; others as recorded: " +
          (answer.open.latest ? core::formatFixed(*answer.open.latest, 1) + " s before"
                              : "it does not");
 }

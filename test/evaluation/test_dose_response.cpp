@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,16 +17,6 @@ RunRecord runOf(const std::string& variant, const std::string& route, double sco
   RunRecord record = test::recordWith({route, "1"}, score);
   record.factors["variant"] = variant;
   return record;
-}
-
-TEST(DoseResponse, RankCorrelationIsThatOfMeanRanks) {
-  EXPECT_DOUBLE_EQ(*spearman({1, 2, 3}, {10, 20, 90}), 1.0);
-  EXPECT_DOUBLE_EQ(*spearman({1, 2, 3}, {9, 8, 7}), -1.0);
-  // Ranks 1, 2, 3, 4 and 1.5, 1.5, 4, 3: deviations' products 3.5, squares 5 and 4.5.
-  EXPECT_NEAR(*spearman({1, 2, 3, 4}, {5, 5, 8, 7}), 3.5 / std::sqrt(5.0 * 4.5), 1e-12);
-  EXPECT_FALSE(spearman({1, 2, 3}, {4, 4, 4}));
-  EXPECT_FALSE(spearman({}, {}));
-  EXPECT_THROW(spearman({1}, {1, 2}), std::invalid_argument);
 }
 
 TEST(DoseResponse, DosesAreOrderedByNumberAndPooledOverSharedRoutes) {

@@ -39,16 +39,6 @@ void add(const std::string& ego, std::size_t contacts, std::vector<EgoRun>& runs
   }
 }
 
-TEST(RankCorrelation, OfRanksWithTies) {
-  // 1 - 6 sum d^2 / (n (n^2 - 1)) = 1 - 6 x 2 / 60 = 0.8
-  EXPECT_NEAR(*rankCorrelation({1, 2, 3, 4}, {10, 20, 40, 30}), 0.8, 1e-12);
-  EXPECT_NEAR(*rankCorrelation({1, 2, 3}, {3, 2, 1}), -1.0, 1e-12);
-  // Ranks 1.5, 1.5, 3 against 1, 2, 3: covariance 1.5, variances 1.5 and 2.
-  EXPECT_NEAR(*rankCorrelation({0, 0, 1}, {1, 2, 3}), 1.5 / std::sqrt(3.0), 1e-12);
-  EXPECT_FALSE(rankCorrelation({1, 2}, {1, 2}));
-  EXPECT_FALSE(rankCorrelation({1, 1, 1}, {1, 2, 3}));
-}
-
 TEST(EgoRanking, FewestContactsPerKilometerAreFirst) {
   std::vector<EgoRun> runs;
   add("bad", 3, runs);

@@ -3,7 +3,6 @@
 #include "evaluation/separation/ego_ranking.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
@@ -14,6 +13,7 @@
 #include "evaluation/executor.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/run_record.h"
+#include "metrics/formulas/rank_correlation.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -91,12 +91,13 @@ double stepOf(std::string_view trace, double seconds) {
   return tick.value_or(0.0) > 0.0 ? seconds / *tick : 0.0;
 }
 
-/// Everything but the ego's name. Throws json::exception for a damaged summary.
+/// The ego is called by its planner. Throws json::exception for a damaged summary.
 EgoRun readRun(const fs::path& folder, const fs::path& base) {
   const json summary = json::parse(core::readFile(folder / "summary.json", "summary"));
   EgoRun run;
   run.setting = summary.at("mode").get<std::string>() + ", CBVs " +
                 summary.at("cbv_planner").get<std::string>();
+  run.ego = summary.at("ego_planner");
   run.scenario = summary.at("scenario");
   run.seed = std::to_string(summary.at("seed").get<std::int64_t>());
   run.report = fs::proximate(folder / "report.html", base).generic_string();
@@ -128,22 +129,19 @@ EgoRun checkedRun(const fs::path& folder, const fs::path& base) {
 /// its planner, with the variant where there are several.
 std::vector<EgoRun> readBatch(const fs::path& folder, const fs::path& base) {
   std::vector<EgoRun> runs;
-  std::map<std::string, std::set<std::string>> planners;   // by variant
-  std::vector<std::pair<std::string, std::string>> names;  // variant, planner
+  std::map<std::string, std::set<std::string>> planners;  // by variant
+  std::vector<std::string> variants;                      // of the runs
   for (const RunRecord& record : readRecords(folder)) {
     if (!record.complete()) continue;
-    const fs::path place = runFolder(folder, record.id);
-    runs.push_back(checkedRun(place, base));
+    runs.push_back(checkedRun(runFolder(folder, record.id), base));
     const std::string& variant = record.factors.at("variant");
-    const std::string planner =
-        json::parse(core::readFile(place / "summary.json", "summary")).at("ego_planner");
-    planners[variant].insert(planner);
-    names.emplace_back(variant, planner);
+    planners[variant].insert(runs.back().ego);
+    variants.push_back(variant);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const auto& [variant, planner] = names[i];
-    const bool decides = !variant.empty() && planners[variant].size() == 1;
-    runs[i].ego = decides ? variant : planner + (variant.empty() ? "" : ", " + variant);
+    const std::string& variant = variants[i];
+    if (variant.empty()) continue;
+    runs[i].ego = planners[variant].size() == 1 ? variant : runs[i].ego + ", " + variant;
   }
   return runs;
 }
@@ -214,6 +212,17 @@ void countContact(const EgoRun& run, const EgoRun::Contact& contact, EgoFigures&
   }
 }
 
+/// Of contacts per km or minute, of which there are `sum`; of few routes the exact one alone.
+Interval contactInterval(const Runs& runs, double EgoRun::*exposure, double sum,
+                         std::size_t contacts, RouteBootstrap& bootstrap) {
+  if (sum <= 0.0) return {};
+  const std::set<std::string> scenarios = scenariosOf(runs);
+  std::optional<Interval> by_routes;
+  if (showsIntervals(scenarios.size()))
+    by_routes = bootstrap.valueInterval(sumsOf(runs, exposure, scenarios));
+  return rateInterval(contacts, sum, by_routes);
+}
+
 EgoFigures figuresOf(const std::string& ego, const Runs& runs, RouteBootstrap& bootstrap) {
   EgoFigures figures;
   figures.ego = ego;
@@ -238,16 +247,10 @@ EgoFigures figuresOf(const std::string& ego, const Runs& runs, RouteBootstrap& b
   if (challenges > 0.0) figures.withdrawn_percent = 100.0 * withdrawn / challenges;
   figures.per_km = ratio(contacts, figures.kilometers);
   figures.per_minute = ratio(contacts, figures.minutes);
-  const std::set<std::string> scenarios = scenariosOf(runs);
-  const auto interval = [&](double EgoRun::*exposure, double sum) {
-    if (sum <= 0.0) return Interval();
-    std::optional<Interval> by_routes;
-    if (showsIntervals(scenarios.size()))
-      by_routes = bootstrap.valueInterval(sumsOf(runs, exposure, scenarios));
-    return rateInterval(figures.contacts, sum, by_routes);
-  };
-  figures.per_km_interval = interval(&EgoRun::kilometers, figures.kilometers);
-  figures.per_minute_interval = interval(&EgoRun::minutes, figures.minutes);
+  figures.per_km_interval =
+      contactInterval(runs, &EgoRun::kilometers, figures.kilometers, figures.contacts, bootstrap);
+  figures.per_minute_interval =
+      contactInterval(runs, &EgoRun::minutes, figures.minutes, figures.contacts, bootstrap);
   return figures;
 }
 
@@ -337,43 +340,13 @@ EgoRanking rankSetting(const std::string& setting, const std::map<std::string, R
       [](const EgoFigures& left, const EgoFigures& right) { return left.per_km < right.per_km; });
   const auto odd = ratesOfParity(egos, true);
   const auto even = ratesOfParity(egos, false);
-  if (odd && even) ranking.odd_even = rankCorrelation(*odd, *even);
+  if (odd && even) ranking.odd_even = metrics::rankCorrelation(*odd, *even);
   separate(egos, bootstrap, ranking);
   ranking.remarks = orderRemarks(ranking);
   return ranking;
 }
 
-/// Ranks from 1; equal values share their mean rank.
-std::vector<double> ranksOf(const std::vector<double>& values) {
-  std::vector<double> ranks;
-  for (const double value : values) {
-    const auto below =
-        std::count_if(values.begin(), values.end(), [&](double other) { return other < value; });
-    const auto equal = std::count(values.begin(), values.end(), value);
-    ranks.push_back(static_cast<double>(below) + 0.5 * static_cast<double>(equal + 1));
-  }
-  return ranks;
-}
-
 }  // namespace
-
-std::optional<double> rankCorrelation(const std::vector<double>& first,
-                                      const std::vector<double>& second) {
-  if (first.size() < 3 || first.size() != second.size()) return std::nullopt;
-  const std::vector<double> x = ranksOf(first);
-  const std::vector<double> y = ranksOf(second);
-  const double mean = 0.5 * static_cast<double>(x.size() + 1);
-  double xy = 0.0;
-  double xx = 0.0;
-  double yy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xy += (x[i] - mean) * (y[i] - mean);
-    xx += (x[i] - mean) * (x[i] - mean);
-    yy += (y[i] - mean) * (y[i] - mean);
-  }
-  if (xx == 0.0 || yy == 0.0) return std::nullopt;
-  return xy / std::sqrt(xx * yy);
-}
 
 std::vector<EgoRanking> rankEgos(const std::vector<EgoRun>& runs) {
   std::vector<std::string> order;

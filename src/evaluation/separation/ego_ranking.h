@@ -106,11 +106,6 @@ inline constexpr std::array<const char*, 5> kReferenceFamily = {
 /// One ranking for each setting, in order of appearance. `runs` must outlive them.
 std::vector<EgoRanking> rankEgos(const std::vector<EgoRun>& runs);
 
-/// Spearman's rank correlation; equal values share their mean rank. nullopt for fewer than three
-/// values and where one side is all equal.
-std::optional<double> rankCorrelation(const std::vector<double>& first,
-                                      const std::vector<double>& second);
-
 // The rankings as files and text.
 
 /// Ranks the egos of all folders and writes ego_ranking.csv and ego_ranking.html into the first;

@@ -203,6 +203,29 @@ std::string rankingPage(const std::string& name, const std::vector<EgoRanking>& 
                             html);
 }
 
+namespace {
+
+std::vector<std::string> csvCells(const std::string& setting, std::size_t rank,
+                                  const EgoFigures& ego) {
+  std::vector<std::string> cells = {setting, std::to_string(rank), ego.ego,
+                                    std::to_string(ego.runs)};
+  for (const double value : {ego.kilometers, ego.minutes}) cells.push_back(fixedText(value, 3));
+  cells.push_back(std::to_string(ego.contacts));
+  for (const double value :
+       {ego.per_km, ego.per_km_interval.low, ego.per_km_interval.high, ego.per_minute,
+        ego.per_minute_interval.low, ego.per_minute_interval.high})
+    cells.push_back(fixedText(value, 3));
+  for (const ContactKind kind : kContactKinds) cells.push_back(std::to_string(countOf(ego, kind)));
+  for (const std::size_t count : {ego.standing, ego.slow, ego.near_misses})
+    cells.push_back(std::to_string(count));
+  cells.push_back(ego.withdrawn_percent ? fixedText(*ego.withdrawn_percent, 2) : "");
+  for (const double value : {ego.standing_percent, ego.completion_percent, ego.driving_score})
+    cells.push_back(fixedText(value, 2));
+  return cells;
+}
+
+}  // namespace
+
 std::string rankingCsv(const std::vector<EgoRanking>& rankings) {
   std::vector<std::string> head = {
       "setting",        "rank",   "ego",        "runs",        "km",         "minutes",
@@ -214,25 +237,8 @@ std::string rankingCsv(const std::vector<EgoRanking>& rankings) {
     head.emplace_back(name);
   std::string csv = core::csvRow(head);
   for (const EgoRanking& ranking : rankings) {
-    for (std::size_t i = 0; i < ranking.egos.size(); ++i) {
-      const EgoFigures& ego = ranking.egos[i];
-      std::vector<std::string> cells = {ranking.setting, std::to_string(i + 1), ego.ego,
-                                        std::to_string(ego.runs)};
-      for (const double value : {ego.kilometers, ego.minutes}) cells.push_back(fixedText(value, 3));
-      cells.push_back(std::to_string(ego.contacts));
-      for (const double value :
-           {ego.per_km, ego.per_km_interval.low, ego.per_km_interval.high, ego.per_minute,
-            ego.per_minute_interval.low, ego.per_minute_interval.high})
-        cells.push_back(fixedText(value, 3));
-      for (const ContactKind kind : kContactKinds)
-        cells.push_back(std::to_string(countOf(ego, kind)));
-      for (const std::size_t count : {ego.standing, ego.slow, ego.near_misses})
-        cells.push_back(std::to_string(count));
-      cells.push_back(ego.withdrawn_percent ? fixedText(*ego.withdrawn_percent, 2) : "");
-      for (const double value : {ego.standing_percent, ego.completion_percent, ego.driving_score})
-        cells.push_back(fixedText(value, 2));
-      csv += core::csvRow(cells);
-    }
+    for (std::size_t i = 0; i < ranking.egos.size(); ++i)
+      csv += core::csvRow(csvCells(ranking.setting, i + 1, ranking.egos[i]));
   }
   return csv;
 }

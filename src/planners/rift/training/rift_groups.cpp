@@ -2,10 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/rift/training/rift_groups.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
 #include "e2e_cdiff/core/random.h"
 #include "learning/samples/sample_order.h"
 #include "planning/surrounding_vehicles.h"
@@ -25,22 +21,6 @@ std::vector<traffic::Vehicle> neighborsOf(const traffic::TrafficSnapshot& snapsh
       neighbors.push_back(other);
   }
   return neighbors;
-}
-
-/// 1 for the smallest; equal values share their mean.
-std::vector<double> ranksOf(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  std::vector<double> ranks(values.size());
-  for (std::size_t begin = 0; begin < order.size();) {
-    std::size_t end = begin;
-    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
-    const double rank = 0.5 * static_cast<double>(begin + 1 + end);
-    for (; begin < end; ++begin) ranks[order[begin]] = rank;
-  }
-  return ranks;
 }
 
 }  // namespace
@@ -94,22 +74,6 @@ RiftGroup RiftGroups::of(const PlutoScene& scene, const RiftMoment& moment) {
   const PlutoOutput output = tools.network.forward(tools.builder.inputOf(view, state.lines));
   return {output.features, output.logits,
           evaluator_.returnsOf(state, output.candidates, tools.mask)};
-}
-
-double rankCorrelation(const std::vector<double>& first, const std::vector<double>& second) {
-  const std::vector<double> a = ranksOf(first);
-  const std::vector<double> b = ranksOf(second);
-  const double mean = 0.5 * static_cast<double>(a.size() + 1);
-  double product = 0.0;
-  double square_a = 0.0;
-  double square_b = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    product += (a[i] - mean) * (b[i] - mean);
-    square_a += (a[i] - mean) * (a[i] - mean);
-    square_b += (b[i] - mean) * (b[i] - mean);
-  }
-  const double scale = std::sqrt(square_a * square_b);
-  return scale > 0.0 ? product / scale : 0.0;
 }
 
 }  // namespace cdiff::planners

@@ -61,8 +61,4 @@ class RiftGroups {
   std::map<const PlutoWorld*, std::unique_ptr<OfWorld>> worlds_;
 };
 
-/// Agreement of the order of two lists: Spearman's rank correlation, equal values sharing their
-/// mean rank; 0 where one is constant.
-double rankCorrelation(const std::vector<double>& first, const std::vector<double>& second);
-
 }  // namespace cdiff::planners

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "learning/layers.h"
+#include "metrics/formulas/rank_correlation.h"
 
 namespace cdiff::planners {
 namespace {
@@ -44,7 +45,9 @@ struct PolicySums {
       weighted += weight * returns[i];
     }
     expected += weighted / sum;
-    agreement += rankCorrelation(std::vector<double>(logits.begin(), logits.end()), returns);
+    agreement +=
+        metrics::rankCorrelation(std::vector<double>(logits.begin(), logits.end()), returns)
+            .value_or(0.0);
   }
   void report(const std::string& prefix, double count, learning::Measures& measures) const {
     measures[prefix + "best_return"] = best / count;
