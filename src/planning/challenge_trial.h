@@ -14,6 +14,9 @@
 
 namespace cdiff::planning {
 
+// The plans of CBVs in mode challenging, tried one by one in the ego's place. `Challenge` asks; C
+// is the careful driver of UN R157 (reference_driver/careful_driver.h).
+
 /// An ego that is no faster stands (nuPlan) [m/s].
 inline constexpr double kStandingEgo = 0.05;
 
@@ -22,11 +25,11 @@ struct ChallengeTrial {
   /// The plan, and after its end: along the lane, braking with 8 m/s^2, straight on.
   std::array<reference_driver::ForeseenVehicle, 3> motions;
   std::string refusal;  ///< empty: it may be driven
-  /// Until C in the ego's place is touched.
+  /// Time until C in the ego's place is touched [s].
   double margin = std::numeric_limits<double>::infinity();
-  std::optional<double> hit_time;    ///< an ego that keeps its speed is touched
-  double delta = 0.0;                ///< extra delay with which C answers it
-  std::optional<double> brake_time;  ///< C brakes first
+  std::optional<double> hit_time;    ///< when an ego that keeps its speed is touched [s]
+  double delta = 0.0;                ///< largest extra delay with which C answers it [s]
+  std::optional<double> brake_time;  ///< when C begins to brake [s]
   std::size_t off_road = 0;          ///< states of the plan with a corner off the road
 };
 

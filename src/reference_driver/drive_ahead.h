@@ -12,6 +12,10 @@
 
 namespace cdiff::reference_driver {
 
+// Drives a reference driver through the time ahead, among vehicles whose motion is given (map
+// frame, SI units). The choice of plans in mode challenging and the ego planner careful_driver use
+// it.
+
 /// Another vehicle over the time ahead: where it is 0, 0.1, 0.2 ... s from now (map frame).
 struct ForeseenVehicle {
   std::uint64_t id = 0;  ///< hash of its id
