@@ -3,6 +3,8 @@
 // Near misses: an ego at x = 0 with 10 m/s behind another of the same length, 4.5 m.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "metrics/session_metrics.h"
 #include "metrics/straight_road.h"
 
@@ -13,7 +15,7 @@ class NearMissMetric : public ::testing::Test {
  protected:
   /// At a time, `gap` m between the bumpers; the other drives `speed`.
   void see(double seconds, double gap, double speed, bool contact = false) {
-    const auto tick = static_cast<std::uint64_t>(seconds / 0.05 + 0.5);
+    const auto tick = static_cast<std::uint64_t>(std::llround(seconds / 0.05));
     auto world = test::snapshot(tick, {test::ego(seconds, 0, own_speed_),
                                        test::background("v", seconds + 4.5 + gap, 0, speed)});
     if (contact) world.contacts = {{"ego", "v"}};
