@@ -8,6 +8,7 @@
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 #include "page/page_parts.h"
+#include "record/repeated_faults.h"
 #include "record/session_text.h"
 #include "record/session_yaml.h"
 #include "record/summary.h"
@@ -252,12 +253,14 @@ Markup lateTable(const std::map<std::string, record::LateCounts>& late) {
   return table.html();
 }
 
-Markup faultTable(const std::vector<traffic::Fault>& faults) {
+Markup faultTable(const std::vector<traffic::Fault>& all) {
+  const std::vector<record::RepeatedFault> faults = record::repeatedFaults(all);
   if (faults.empty()) return pageNote("None.");
   HtmlTable table({"#Tick", "Source", "What happened"});
   const std::size_t shown = std::min(faults.size(), kMostFaults);
   for (std::size_t i = 0; i < shown; ++i) {
-    table.row({std::to_string(faults[i].tick), faults[i].source, faults[i].text});
+    const traffic::Fault& fault = faults[i].fault;
+    table.row({std::to_string(fault.tick), fault.source, faults[i].text()});
   }
   const std::size_t left = faults.size() - shown;
   if (left == 0) return table.html();

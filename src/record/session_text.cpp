@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "record/logs/cbv_log.h"
+#include "record/repeated_faults.h"
 #include "record/verdict.h"
 #include "session/session_request.h"
 
@@ -182,13 +183,13 @@ std::string latencyRows(const std::map<std::string, LatencySummary>& latencies) 
 }
 
 /// How many faults there were and the first few, each in one line.
-std::string faultRows(const std::vector<traffic::Fault>& faults) {
+std::string faultRows(const std::vector<RepeatedFault>& faults) {
   constexpr std::size_t kShown = 3;
   constexpr std::size_t kLetters = 300;
   if (faults.empty()) return "";
   std::string text = row("faults", std::to_string(faults.size()));
   for (std::size_t i = 0; i < std::min(kShown, faults.size()); ++i) {
-    std::string line = core::cutText(faults[i].source + ": " + faults[i].text, kLetters);
+    std::string line = core::cutText(faults[i].fault.source + ": " + faults[i].text(), kLetters);
     std::replace(line.begin(), line.end(), '\n', ' ');
     text += row("", "- " + line);
   }
@@ -213,7 +214,7 @@ std::string sessionTable(const SessionResult& result, const std::filesystem::pat
       headRows(result) + measureRows(result.measures) + latencyRows(result.latencies);
   const std::string late = latenessText(result.late);
   if (!late.empty()) text += row("late answers", late);
-  text += faultRows(result.faults);
+  text += faultRows(repeatedFaults(result.faults));
   text += row("verdict", capitalsOf(result.verdict.outcome));
   for (const std::string& reason : result.verdict.reasons) text += row("", "- " + reason);
   return text + row("report", (folder / "report.html").string()) + row("results", folder.string());

@@ -8,6 +8,7 @@
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 #include "planners/planner_by_slot.h"
+#include "record/repeated_faults.h"
 #include "session/session_request.h"
 
 namespace cdiff::record {
@@ -157,8 +158,12 @@ Json lateObject(const std::map<std::string, LateCounts>& late) {
 
 Json faultList(const std::vector<traffic::Fault>& faults) {
   Json list = Json::array();
-  for (const traffic::Fault& fault : faults) {
+  for (const RepeatedFault& repeated : repeatedFaults(faults)) {
+    const traffic::Fault& fault = repeated.fault;
     list.push_back({{"tick", fault.tick}, {"source", fault.source}, {"text", fault.text}});
+    if (repeated.times == 1) continue;
+    list.back()["times"] = repeated.times;
+    list.back()["last_tick"] = repeated.last_tick;
   }
   return list;
 }

@@ -139,7 +139,7 @@ TEST_F(LateSession, RecordSaysWhatDroveAndHowLateTheAnswerCame) {
   EXPECT_EQ(tracker_.late(), 1U);
   const auto texts = latenessTexts(*records[0]);
   ASSERT_EQ(texts.size(), 1U);
-  EXPECT_NE(texts.at("cbv:sample").find("came 0.030 s after its time"), std::string::npos);
+  EXPECT_NE(texts.at({"cbv:sample", true}).find("came 0.030 s after its time"), std::string::npos);
 }
 
 TEST_F(LateSession, DecisionThatAPlannerLeftOutIsSettledByItsNextAnswer) {

@@ -283,10 +283,10 @@ TEST_F(EgoSession, RosbagPlayShowsTheSceneInRviz) {
       " e2e_cdiff scene.launch rviz:=false & "
       "for try in $(seq 100); do rosnode list 2>/dev/null | grep -q scene_node && break; sleep "
       "0.3; done; "
-      "for topic in markers markers/map tf ego/odometry; do "
+      "for topic in markers markers/map markers/rollouts tf ego/odometry; do "
       "timeout 60 rostopic echo -n 1 /$topic >${topic//\\//_} & echoes=\"$echoes $!\"; done; "
       "for try in 1 2 3; do sleep 2; rosbag play --clock --quiet recorded/session.bag; "
-      "[ -s markers ] && [ -s markers_map ] && [ -s tf ] && [ -s ego_odometry ] && break; "
+      "[ -s markers ] && [ -s markers_map ] && [ -s markers_rollouts ] && [ -s tf ] && [ -s ego_odometry ] && break; "
       "done; wait $echoes; kill -INT %1; wait");
   EXPECT_LT(session_.endAfter(120.0), 120.0) << session_.log();
   const auto shown = [&](const char* name) {
@@ -294,6 +294,7 @@ TEST_F(EgoSession, RosbagPlayShowsTheSceneInRviz) {
   };
   EXPECT_NE(shown("markers").find("ns: \"vehicles\""), std::string::npos) << session_.log();
   EXPECT_NE(shown("markers_map").find("ns: \"lanes\""), std::string::npos) << session_.log();
+  EXPECT_NE(shown("markers_rollouts").find("ns: \"rollouts\""), std::string::npos);
   EXPECT_NE(shown("tf").find("ego/base_link"), std::string::npos);
   EXPECT_NE(shown("ego_odometry").find("covariance: [1e-06"), std::string::npos);
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+
 #include "node_graph/lockstep/wall_clock_pacer.h"
 #include "node_graph/pacer_fixture.h"
 
@@ -31,6 +33,28 @@ TEST_F(WallClockPacerTest, TickEndsWithoutAnswersWhenItsTimeHasCome) {
   EXPECT_EQ(kept_, Ticks{0});
   EXPECT_EQ(pacer.late(), 2U);  // selection and ego
   EXPECT_FALSE(faults_.empty());
+}
+
+TEST_F(WallClockPacerTest, FaultsSayWhatDroveFirstAndThenThatTheVehicleBraked) {
+  WallClockPacer& pacer = make<WallClockPacer>(options_);
+  pacer.published(snapshotAt(0));
+  select(0);
+  control(0, kEgoSlot, "ego", 0.25);
+  pacer.advance();
+  for (std::uint64_t tick = 1; tick < 30; ++tick) {  // 1.5 s of silence
+    pacer.published(snapshotAt(tick));
+    if (tick % 2 == 0) select(tick);
+    pacer.advance();
+  }
+  pacer.close();
+  const auto count = [&](const char* text) {
+    return std::count_if(faults_.begin(), faults_.end(), [&](const std::string& fault) {
+      return fault.find("vehicle 'ego'") != std::string::npos &&
+             fault.find(text) != std::string::npos;
+    });
+  };
+  EXPECT_EQ(count("by the plan of tick 0"), 1);
+  EXPECT_EQ(count("braked fully"), 1);
 }
 
 TEST_F(WallClockPacerTest, PunctualAnswersMoveTheWorldAndAreNotLate) {

@@ -216,16 +216,18 @@ msgs::DecisionRecord punctualRecord(const msgs::TrafficSnapshot& snapshot,
   return record;
 }
 
-std::map<std::string, std::string> latenessTexts(const msgs::DecisionRecord& record) {
-  std::map<std::string, std::string> texts;
+std::map<LatePlanner, std::string> latenessTexts(const msgs::DecisionRecord& record) {
+  std::map<LatePlanner, std::string> texts;
   if (!record.selection_came || record.selection_lateness > 0.0) {
-    texts[kCbvIdentificationNode] = sentence("the selection", record.tick, record.selection_came,
-                                             record.selection_lateness, "the earlier one stayed");
+    texts[{kCbvIdentificationNode}] = sentence("the selection", record.tick, record.selection_came,
+                                               record.selection_lateness, "the earlier one stayed");
   }
   for (const msgs::DecidedVehicle& vehicle : record.vehicles) {
     if (!vehicle.asked || (vehicle.answered && vehicle.lateness <= 0.0)) continue;
-    texts.try_emplace(vehicle.answer.planner, sentence("the answer", record.tick, vehicle.answered,
-                                                       vehicle.lateness, insteadText(vehicle)));
+    const bool full_brake = vehicle.driven_by == msgs::DecidedVehicle::FULL_BRAKE;
+    texts.try_emplace({vehicle.answer.planner, full_brake},
+                      sentence("the answer", record.tick, vehicle.answered, vehicle.lateness,
+                               insteadText(vehicle)));
   }
   return texts;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -77,7 +78,15 @@ class DecisionTracker {
 ::e2e_cdiff::DecisionRecord punctualRecord(const ::e2e_cdiff::TrafficSnapshot& snapshot,
                                            const TickAnswers& answers);
 
-/// Sentences on what came late, by planner ("cbv_identification" for the selection).
-std::map<std::string, std::string> latenessTexts(const ::e2e_cdiff::DecisionRecord& record);
+/// Whose answer came late, and whether the vehicle braked fully for want of it.
+struct LatePlanner {
+  std::string name;  ///< of the planner; "cbv_identification" for the selection
+  bool full_brake = false;
+  bool operator<(const LatePlanner& other) const {
+    return std::tie(name, full_brake) < std::tie(other.name, other.full_brake);
+  }
+};
+/// Sentences on what came late.
+std::map<LatePlanner, std::string> latenessTexts(const ::e2e_cdiff::DecisionRecord& record);
 
 }  // namespace cdiff::node_graph

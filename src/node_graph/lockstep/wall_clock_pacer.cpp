@@ -102,7 +102,7 @@ void WallClockPacer::settle(bool all) {
   for (const auto& record : decisions_.settle(answers_, published_->tick, all)) {
     publishRecord(record);
     for (const auto& [planner, text] : latenessTexts(*record)) {
-      if (late_planners_.insert(planner).second) output_.fault(planner, text);
+      if (late_planners_.insert(planner).second) output_.fault(planner.name, text);
     }
   }
   keepSettled();

@@ -43,7 +43,7 @@ class WallClockPacer : public Pacer {
   PacedAnswers paced_answers_;
   DecisionTracker decisions_;
   std::map<int, AnyMessage> early_controls_;  ///< by slot: come before their rollouts
-  std::set<std::string> late_planners_;       ///< whose first late answer is reported
+  std::set<LatePlanner> late_planners_;       ///< of which one late answer is reported
   std::deque<Snapshot> unsettled_;            ///< from an open decision on
   Clock::time_point ego_heard_at_;            ///< last command of the external ego
   Clock::time_point acknowledged_at_;         ///< last time that the observers came on

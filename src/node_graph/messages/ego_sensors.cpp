@@ -164,7 +164,10 @@ void EgoSensors::publishScans(const traffic::TrafficSnapshot& snapshot) {
   const std::string ego = traffic::kEgoId;
   if (scan_.getNumSubscribers() > 0) {
     rendering::RangeSensor& laser = made(laser_, options.laser);
-    scan_.publish(toLaserScanMsg(laser, laser.scan(snapshot, ego), snapshot.time, ego));
+    sensor_msgs::LaserScan scan =
+        toLaserScanMsg(laser, laser.scan(snapshot, ego), snapshot.time, ego);
+    scan.scan_time = static_cast<float>(setup_.options().decision_period);
+    scan_.publish(scan);
   }
   if (points_.getNumSubscribers() > 0) {
     rendering::RangeSensor& lidar = made(lidar_, options.lidar);

@@ -12,13 +12,18 @@
 #include "node_graph/session_graph.h"
 
 namespace cdiff::node_graph {
+namespace {
+
+constexpr std::uint32_t kQueueSize = 100;
+
+}  // namespace
 
 int SceneNode::run() {
-  constexpr std::uint32_t kQueueSize = 100;
   using visualization_msgs::MarkerArray;
   const auto name = [](ChannelId id) { return Topic(id).name(); };
   markers_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMarkers), kQueueSize);
   map_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMapMarkers), 1, true);
+  rollouts_output_ = node_.advertise<MarkerArray>(name(ChannelId::kRolloutMarkers), kQueueSize);
   const auto at_once = ros::TransportHints().tcpNoDelay();
   const ros::Subscriber inputs[] = {
       node_.subscribe<msgs::SessionInfo>(
@@ -46,6 +51,17 @@ void SceneNode::takeSession(const msgs::SessionInfo& info) {
   markers_ = SessionMarkers();
   selection_.reset();
   map_output_.publish(mapMarkers(*setup_));
+  listenToRollouts();
+}
+
+void SceneNode::listenToRollouts() {
+  rollouts_.clear();
+  for (int slot = 0; slot < setup_->options().max_cbv; ++slot) {
+    rollouts_.push_back(node_.subscribe<msgs::Rollout>(
+        Topic(ChannelId::kCbvRollout, slot).name(), kQueueSize,
+        [this](const msgs::Rollout::ConstPtr& rollout) { takeRollout(*rollout); }, {},
+        ros::TransportHints().tcpNoDelay()));
+  }
 }
 
 void SceneNode::takeSelection(const msgs::CbvSelection::ConstPtr& selection) {
@@ -65,6 +81,14 @@ void SceneNode::takeTraffic(const msgs::TrafficSnapshot& message) {
   } catch (const core::InputError& error) {
     ROS_ERROR_THROTTLE(1.0, "a tick cannot be shown: %s", error.what());
   }
+}
+
+void SceneNode::takeRollout(const msgs::Rollout& message) {
+  planning::PlannedAction action;
+  action.slot = message.slot;
+  action.vehicle_id = message.vehicle_id;
+  action.rollout = fromMsg(message);
+  rollouts_output_.publish(rolloutMarkers({action}, message.header.stamp.toSec()));
 }
 
 }  // namespace cdiff::node_graph

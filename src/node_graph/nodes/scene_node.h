@@ -3,8 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "e2e_cdiff/CbvSelection.h"
+#include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "node_graph/lockstep/node_process.h"
@@ -26,11 +28,15 @@ class SceneNode {
   void takeSession(const ::e2e_cdiff::SessionInfo& info);
   void takeSelection(const ::e2e_cdiff::CbvSelection::ConstPtr& selection);
   void takeTraffic(const ::e2e_cdiff::TrafficSnapshot& snapshot);
+  void takeRollout(const ::e2e_cdiff::Rollout& message);
+  void listenToRollouts();
 
   StopSignal& stop_;
   ros::NodeHandle node_;
   ros::Publisher markers_output_;
   ros::Publisher map_output_;
+  ros::Publisher rollouts_output_;
+  std::vector<ros::Subscriber> rollouts_;  ///< of the session's slots
   std::unique_ptr<session::SessionSetup> setup_;
   SessionMarkers markers_;
   ::e2e_cdiff::CbvSelection::ConstPtr selection_;  ///< the last one

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+
+namespace cdiff::record {
+
+/// A fault and how often it was noticed.
+struct RepeatedFault {
+  traffic::Fault fault;         ///< with the tick of the first time
+  std::uint64_t last_tick = 0;  ///< of the last time
+  std::size_t times = 1;
+
+  /// The text, and where it was noticed again "(10 times, ticks 20 to 38)".
+  std::string text() const;
+};
+
+/// Faults of equal source and text as one, so that a node that sends the same bad command ten times
+/// a second is told once. Ordered by the last time: the last one is the last of `faults`.
+std::vector<RepeatedFault> repeatedFaults(const std::vector<traffic::Fault>& faults);
+
+}  // namespace cdiff::record
