@@ -277,7 +277,7 @@ TEST_F(EgoSession, NoArgumentIsListedAsRequiredButTheBagOfAReplay) {
 }
 
 TEST_F(EgoSession, RosbagPlayShowsTheSceneInRviz) {
-  test::recordSession(session_.folder() / "recorded", {"protocol.time_limit=3"});
+  test::recordSession(session_.folder() / "recorded", {"protocol.time_limit=8"});
   session_.start(
       "roslaunch -p " + std::to_string(session_.port()) +
       " e2e_cdiff scene.launch rviz:=false & "
@@ -286,7 +286,8 @@ TEST_F(EgoSession, RosbagPlayShowsTheSceneInRviz) {
       "for topic in markers markers/map markers/rollouts tf ego/odometry; do "
       "timeout 60 rostopic echo -n 1 /$topic >${topic//\\//_} & echoes=\"$echoes $!\"; done; "
       "for try in 1 2 3; do sleep 2; rosbag play --clock --quiet recorded/session.bag; "
-      "[ -s markers ] && [ -s markers_map ] && [ -s markers_rollouts ] && [ -s tf ] && [ -s ego_odometry ] && break; "
+      "[ -s markers ] && [ -s markers_map ] && [ -s markers_rollouts ] && [ -s tf ] && [ -s "
+      "ego_odometry ] && break; "
       "done; wait $echoes; kill -INT %1; wait");
   EXPECT_LT(session_.endAfter(120.0), 120.0) << session_.log();
   const auto shown = [&](const char* name) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "record/repeated_faults.h"
-
 #include <gtest/gtest.h>
+
+#include "record/repeated_faults.h"
 
 namespace cdiff::record {
 namespace {
