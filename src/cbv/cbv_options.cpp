@@ -66,8 +66,9 @@ void describeTimes(CbvOptions& options, core::OptionsVisitor& visitor) {
   visitor.number({"period", "s", "Time between selections."}, options.period, 0.01, 1000.0);
   visitor.text(
       {"life_cycle", "",
-       "rift: a CBV stays one; reselect: released on a lost conflict or for a better one."},
-      options.life_cycle, {"rift", "reselect"});
+       "rift: a CBV stays one; reselect: released on a lost conflict or for a better one; by_mode: "
+       "reselect in challenging, else rift."},
+      options.life_cycle, {"rift", "reselect", "by_mode"});
   visitor.number({"hysteresis", "", "Reselect: by how much a challenger's score must be better."},
                  options.hysteresis, 0.0, 1.0);
   visitor.number(
@@ -86,6 +87,12 @@ void CbvOptions::describe(core::OptionsVisitor& visitor) {
   describeRoutes(*this, visitor);
   describeScore(*this, visitor);
   describeTimes(*this, visitor);
+}
+
+CbvOptions CbvOptions::inMode(const std::string& mode) const {
+  CbvOptions options = *this;
+  if (life_cycle == "by_mode") options.life_cycle = mode == "challenging" ? "reselect" : "rift";
+  return options;
 }
 
 void CbvOptions::validate() const {

@@ -214,14 +214,15 @@ std::tuple<int, std::size_t, double> Challenge::Parts::rankOf(const ChallengePla
                                                               const ChallengeTrial& trial,
                                                               const Attack& attack) const {
   if (!trial.refusal.empty()) return {9, 0, -trial.margin};
-  const bool promised = attack.ghost && plan.kept;
+  const bool promised = attack.ghost && plan.kept && trial.hit_time;
   const bool hits = trial.hit_time && trial.off_road == 0 && !plan.brakes && !promised;
   const bool gains = hits && (!attack.ghost || (own.time - attack.ghost->switched >= kSwitchHold &&
                                                 trial.delta <= attack.ghost->delta - kSwitchGain));
   if (gains) return {0, 0, trial.delta};
   if (promised) return {1, 0, 0.0};
   const bool idle = plan.brakes || plan.kept;
-  return {idle ? 3 : 2, trial.off_road, plan.score};
+  if (trial.approach_time && !idle && trial.off_road == 0) return {2, 0, *trial.approach_time};
+  return {idle ? 4 : 3, trial.off_road, plan.score};
 }
 
 void Challenge::Parts::conclude(const ChallengePlan& plan, const ChallengeTrial& trial,

@@ -20,6 +20,7 @@ using reference_driver::OwnMotion;
 
 constexpr double kClearance = 0.3;       // that C keeps [m]
 constexpr double kPlanTime = 3.2;        // [s]
+constexpr double kApproachTime = 8.0;    // within which an approach leads to a hit [s]
 constexpr double kBeyond = 1.0;          // that is looked at after it and after standstill [s]
 constexpr double kHardBraking = 8.0;     // of a CBV after its plan [m/s^2]
 constexpr double kCrawlingSpeed = 1.0;   // of a CBV that no longer attacks [m/s]
@@ -101,12 +102,12 @@ double ChallengeCourse::duration() const {
 
 /// How a driver is touched within the plan: "hit" or what speaks against it; empty: not at all.
 std::string ChallengeCourse::strikeOf(reference_driver::ReferenceDriver& driver,
-                                      ChallengeTrial& trial) const {
+                                      ChallengeTrial& trial, double duration) const {
   OwnMotion start = own_;
   start.acceleration = 0.0;
   const ForeseenVehicle& motion = trial.motions.front();
   const DriveOutcome outcome =
-      driveAhead(driver, start, path_, {motion}, {kPlanTime, 0.0, own_.speed});
+      driveAhead(driver, start, path_, {motion}, {duration, 0.0, own_.speed});
   if (!outcome.contact_time) return "";
   const auto step = static_cast<std::size_t>(std::lround(*outcome.contact_time / kForeseenStep));
   const traffic::VehicleState& there = motion.states[std::min(step, motion.states.size() - 1)];
@@ -117,6 +118,22 @@ std::string ChallengeCourse::strikeOf(reference_driver::ReferenceDriver& driver,
   if (there.speed < kCrawlingSpeed) return "the CBV stands";
   trial.hit_time = outcome.contact_time;
   return "hit";
+}
+
+/// Fills `approach_time`.
+void ChallengeCourse::findApproach(const traffic::Vehicle& cbv, ChallengeTrial& trial) const {
+  const ForeseenVehicle& planned = trial.motions.front();
+  const traffic::VehicleState& end = planned.states.back();
+  if (own_.speed <= kStandingEgo || end.speed < kCrawlingSpeed) return;
+  ForeseenVehicle motion = planned;
+  const auto steps = static_cast<std::size_t>(
+      std::lround(kApproachTime / kForeseenStep) - static_cast<long>(planned.states.size()) + 1);
+  const auto tail = alongLane(cbv, end, context_.network, steps);
+  motion.states.insert(motion.states.end(), tail.begin(), tail.end());
+  ChallengeTrial later;
+  later.motions.front() = std::move(motion);
+  reference_driver::UnresponsiveDriver unresponsive;
+  if (strikeOf(unresponsive, later, kApproachTime) == "hit") trial.approach_time = later.hit_time;
 }
 
 /// Three ways to go on after the plan.
@@ -143,13 +160,14 @@ ChallengeTrial ChallengeCourse::examine(const traffic::Vehicle& cbv,
   foreseen.states.insert(foreseen.states.end(), plan.states.begin(), plan.states.end());
   HeldBraking as_it_does(own_.acceleration);
   reference_driver::UnresponsiveDriver unresponsive;
-  const std::string braking = strikeOf(as_it_does, trial);
+  const std::string braking = strikeOf(as_it_does, trial, kPlanTime);
   trial.hit_time.reset();
-  const std::string steady = strikeOf(unresponsive, trial);
+  const std::string steady = strikeOf(unresponsive, trial, kPlanTime);
   for (const std::string& strike : {braking, steady}) {
     if (strike == "from behind" || strike == "the ego stands") trial.refusal = strike;
   }
-  if (trial.refusal.empty() && plan.only_to_hit && !trial.hit_time)
+  if (trial.refusal.empty() && !trial.hit_time) findApproach(cbv, trial);
+  if (trial.refusal.empty() && plan.only_to_hit && !trial.hit_time && !trial.approach_time)
     trial.refusal = "it does not hit";
   if (!plan.only_to_hit || trial.refusal.empty()) addTails(cbv, trial);
   return trial;

@@ -28,6 +28,8 @@ struct ChallengeTrial {
   /// Time until C in the ego's place is touched [s].
   double margin = std::numeric_limits<double>::infinity();
   std::optional<double> hit_time;    ///< when an ego that keeps its speed is touched [s]
+  /// When it is touched after the plan, with the CBV on its lane [s].
+  std::optional<double> approach_time;
   double delta = 0.0;                ///< largest extra delay with which C answers it [s]
   std::optional<double> brake_time;  ///< when C begins to brake [s]
   std::size_t off_road = 0;          ///< states of the plan with a corner off the road
@@ -63,7 +65,9 @@ class ChallengeCourse {
  private:
   double duration() const;
   void addTails(const traffic::Vehicle& cbv, ChallengeTrial& trial) const;
-  std::string strikeOf(reference_driver::ReferenceDriver& driver, ChallengeTrial& trial) const;
+  std::string strikeOf(reference_driver::ReferenceDriver& driver, ChallengeTrial& trial,
+                       double duration) const;
+  void findApproach(const traffic::Vehicle& cbv, ChallengeTrial& trial) const;
 
   const PlanningContext& context_;
   const reference_driver::OwnMotion& own_;

@@ -103,7 +103,8 @@ LoopParts makeParts(const SessionSetup& setup) {
   parts.cbv_planner = {setup.makeCbvPlanner(), planners::seesImages(options.cbv_planner)};
   if (parts.ego_planner.sees || parts.cbv_planner.sees) parts.cameras.emplace(setup);
   parts.selector = std::make_unique<cbv::CbvSelector>(
-      options.cbv, static_cast<int>(options.max_cbv), setup.graph(), setup.egoRoute());
+      options.cbv.inMode(options.mode), static_cast<int>(options.max_cbv), setup.graph(),
+      setup.egoRoute());
   return parts;
 }
 

@@ -51,6 +51,15 @@ TEST(LifeCycle, DistancesOfAHeldCbvAreThoseOfTheDecision) {
   EXPECT_EQ(passed.assignments[0].conflict_point.cbv_distance, 0.0);
 }
 
+TEST(LifeCycle, OfChallengingReselectsWhereTheScenarioDoesNotSay) {
+  CbvOptions options;
+  EXPECT_EQ(options.inMode("challenging").life_cycle, "reselect");
+  EXPECT_EQ(options.inMode("safety_critical").life_cycle, "rift");
+  EXPECT_EQ(options.inMode("naturalistic").life_cycle, "rift");
+  options.life_cycle = "rift";
+  EXPECT_EQ(options.inMode("challenging").life_cycle, "rift");
+}
+
 TEST(LifeCycle, RiftNeverRanksAgain) {
   CrossingWorld world({}, 1);
   world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("weak", -20.0, 2.0)}));

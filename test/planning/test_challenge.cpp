@@ -86,6 +86,23 @@ TEST_F(ChallengeTest, AttacksWhereACarefulDriverCanAnswer) {
   EXPECT_NEAR(*report.last_brake_time, 1.2 + report.delta, 1e-9);
 }
 
+// 20.5 m ahead and 3 m/s slower: the ego reaches it in 6.8 s.
+TEST_F(ChallengeTest, PrefersAnApproachThatLeadsToAHitAfterThePlan) {
+  const traffic::Vehicle lead = vehicleAt("cbv", {125.0, 0.0}, 0.0, 5.0);
+  traffic::Vehicle leaving = lead;
+  leaving.state.speed = 9.0;
+  ChallengePlan approach = planOf(lead);
+  approach.score = 1.0;  // the worse one by its objective
+  traffic::TrafficSnapshot snapshot;
+  snapshot.vehicles = {vehicleAt("ego", {100.0, 0.0}, 0.0, 8.0), lead};
+  Challenge challenge(context_, "medium");
+  challenge.startDecision(snapshot);
+  const auto report = challenge.choose(lead, {planOf(leaving), approach});
+  EXPECT_EQ(report.chosen, 1);
+  EXPECT_EQ(report.state, "drives");
+  EXPECT_FALSE(report.ghost.has_value());
+}
+
 TEST_F(ChallengeTest, AsksForMoreTimeAtAnEasierLevel) {
   Challenge hard(context_, "hard");
   const double delta = decide(hard, crossing_).delta;

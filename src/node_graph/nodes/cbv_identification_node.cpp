@@ -10,7 +10,8 @@
 namespace cdiff::node_graph {
 
 void CbvIdentificationNode::startSession(const msgs::SessionInfo& info) {
-  options_ = optionsFromMsg(info).cbv;
+  const session::ScenarioOptions options = optionsFromMsg(info);
+  options_ = options.cbv.inMode(options.mode);
   network_.emplace(map::RoadNetwork::fromText(info.network_text, info.network_source));
   graph_.emplace(*network_);
   selections_ = advertise<msgs::CbvSelection>(ChannelId::kSelection);
