@@ -126,8 +126,8 @@ void ChallengeCourse::findApproach(const traffic::Vehicle& cbv, ChallengeTrial& 
   const traffic::VehicleState& end = planned.states.back();
   if (own_.speed <= kStandingEgo || end.speed < kCrawlingSpeed) return;
   ForeseenVehicle motion = planned;
-  const auto steps = static_cast<std::size_t>(
-      std::lround(kApproachTime / kForeseenStep) - static_cast<long>(planned.states.size()) + 1);
+  const auto steps = static_cast<std::size_t>(std::lround(kApproachTime / kForeseenStep) -
+                                              static_cast<long>(planned.states.size()) + 1);
   const auto tail = alongLane(cbv, end, context_.network, steps);
   motion.states.insert(motion.states.end(), tail.begin(), tail.end());
   ChallengeTrial later;

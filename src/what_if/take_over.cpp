@@ -273,13 +273,20 @@ Course driveOpen(const RecordedRun& run, const Driver& driver, const session::Se
   return std::move(follower.course());
 }
 
-int latestAvoiding(int known, const std::function<bool(int)>& avoids) {
+std::optional<int> latestAvoiding(int earliest, const std::function<bool(int)>& avoids) {
+  constexpr int kStride = 5;
   int fails = 0;
-  while (known - fails > 1) {
-    const int middle = fails + (known - fails) / 2;
-    (avoids(middle) ? known : fails) = middle;
+  while (fails < earliest) {
+    const int next = std::min(fails + kStride, earliest);
+    if (avoids(next)) {
+      for (int steps = fails + 1; steps < next; ++steps) {
+        if (avoids(steps)) return steps;
+      }
+      return next;
+    }
+    fails = next;
   }
-  return known;
+  return std::nullopt;
 }
 
 }  // namespace cdiff::what_if

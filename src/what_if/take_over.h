@@ -96,9 +96,10 @@ Course driveClosed(const RecordedRun& run, const Driver& driver, const session::
 Course driveOpen(const RecordedRun& run, const Driver& driver, const session::SessionSetup& setup,
                  const TakeOver& take_over, const RecordedCourse& recorded, double shift = 0.0);
 
-/// The smallest number of steps before the contact at which a take-over avoids it, by bisection
-/// between one that does (`known`, positive) and the contact itself, where none does. `avoids` is
-/// asked for numbers in between.
-int latestAvoiding(int known, const std::function<bool(int)>& avoids);
+/// The smallest number of steps before the contact, up to `earliest`, at which a take-over avoids
+/// it: of every fifth number the first that does, then of the four below. Who avoids it at one time
+/// may fail at an earlier one, so nothing is assumed of the others; a shorter window may be missed.
+/// nullopt where none avoids it.
+std::optional<int> latestAvoiding(int earliest, const std::function<bool(int)>& avoids);
 
 }  // namespace cdiff::what_if

@@ -133,17 +133,14 @@ class Inquiry {
     return driveClosed(run_, driver_, setup_, at);
   }
 
-  /// From the take-over that was asked for, or the earliest one where that is too late.
   std::optional<double> latest(const LoopAnswer& asked,
                                const std::function<Course(const TakeOver&)>& drive) const {
-    const auto avoids = [&](int steps) { return !drive(takeOver(steps * period())).contact; };
-    int known = static_cast<int>(std::lround(question_.before / period()));
-    if (!asked.avoids()) {
-      const int earliest = earliestSteps();
-      if (earliest <= known || !avoids(earliest)) return std::nullopt;
-      known = earliest;
-    }
-    return latestAvoiding(std::max(1, known), avoids) * period();
+    const int known = static_cast<int>(std::lround(question_.before / period()));
+    const auto found = latestAvoiding(earliestSteps(), [&](int steps) {
+      return steps == known ? asked.avoids() : !drive(takeOver(steps * period())).contact;
+    });
+    if (found) return *found * period();
+    return asked.avoids() ? std::optional<double>(question_.before) : std::nullopt;
   }
 
   const RecordedRun& run_;
@@ -162,6 +159,14 @@ Answer answer(const RecordedRun& run, const session::SessionSetup& setup, const 
 }
 
 namespace {
+
+/// The meaning of the word in this package (docs/what_if.md): "avoidable: "; empty for other
+/// drivers and times.
+std::string avoidableText(const Answer& answer) {
+  constexpr double kBefore = 3.0;  // [s]
+  if (answer.driver != DriverChoice().planner || answer.question.before != kBefore) return "";
+  return answer.closed.avoids() ? "avoidable: " : "not avoidable: ";
+}
 
 /// "taking over 1.4 s before the contact avoids it", and that the take-over that was asked for does
 /// not, where one at another time does.
@@ -200,8 +205,8 @@ std::string answerText(const Answer& answer) {
            "; others as recorded: " + courseText(answer.open.course);
   }
   return "contact " + std::to_string(contact->number) + " (" + contact->partner + ", " +
-         core::formatFixed(contact->seconds, 2) + " s): " + answer.driver + " " +
-         latestText(answer) + "; others as recorded: " +
+         core::formatFixed(contact->seconds, 2) + " s): " + avoidableText(answer) + answer.driver +
+         " " + latestText(answer) + "; others as recorded: " +
          (answer.open.latest ? core::formatFixed(*answer.open.latest, 1) + " s before"
                              : "it does not");
 }

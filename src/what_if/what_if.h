@@ -57,8 +57,8 @@ Question questionOf(const RecordedRun& run, std::optional<std::size_t> contact,
 Answer answer(const RecordedRun& run, const session::SessionSetup& setup, const Driver& driver,
               const Question& question, const std::atomic<bool>& stop);
 
-/// A sentence: "contact 1 (bg_55, 16.10 s): careful_driver taking over 1.4 s before the contact
-/// avoids it".
+/// A sentence: "contact 1 (bg_55, 16.10 s): avoidable: careful_driver taking over 1.4 s before the
+/// contact avoids it".
 std::string answerText(const Answer& answer);
 
 /// The row of a table of answers, and its head.
