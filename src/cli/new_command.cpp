@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The command `cdiff new`: writes a scenario that runs at once, with its network and a map.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -74,13 +75,27 @@ class ScenarioMaker {
  private:
   fs::path file(const std::string& ending) const { return base_.string() + ending; }
 
+  /// Whether the network is generated or converted, and so written beside the scenario.
+  bool writesNetwork() const {
+    const std::string& source = arguments_.osm.empty() ? arguments_.network : arguments_.osm;
+    return source.empty() || (core::isFile(source) && !core::endsWith(source, ".net.xml"));
+  }
+
   void requireFree() const {
     if (arguments_.overwrite) return;
-    for (const char* ending : {".yaml", ".net.xml", ".svg"}) {
-      if (!fs::exists(file(ending))) continue;
-      throw InputError("'" + file(ending).string() +
-                       "' is there already; give another NAME, or --overwrite to replace it");
+    std::vector<std::string> endings = {".yaml"};
+    if (writesNetwork()) endings.emplace_back(".net.xml");
+    if (arguments_.picture) endings.emplace_back(".svg");
+    std::vector<std::string> taken;
+    for (const std::string& ending : endings) {
+      if (fs::exists(file(ending))) taken.push_back("'" + file(ending).string() + "'");
     }
+    if (taken.empty()) return;
+    throw InputError(
+        core::joinText(taken, " and ") + (taken.size() == 1 ? " is" : " are") +
+        " there already; give another NAME, or --overwrite to replace " +
+        (taken.size() == 1 ? "this file" : "these files") +
+        (writesNetwork() ? "" : " (the network '" + arguments_.network + "' stays as it is)"));
   }
 
   NetworkChoice choose() const {
@@ -101,7 +116,7 @@ class ScenarioMaker {
     const map::ImportedNetwork network = map::importNetwork(source);
     NetworkChoice choice{network.text, source, false, "network '" + network.source.string() + "'"};
     if (!core::isFile(source)) return choice;
-    choice.own = !core::endsWith(source, ".net.xml");
+    choice.own = writesNetwork();
     const fs::path folder = fs::absolute(base_).parent_path();
     choice.named = choice.own ? file(".net.xml").filename().string()
                               : fs::relative(fs::absolute(source), folder).string();
@@ -111,7 +126,7 @@ class ScenarioMaker {
   std::vector<suite::SuggestedRoute> suggestions(const map::LaneGraph& graph) const {
     constexpr std::size_t kShown = 8;
     try {
-      auto routes = suite::suggestRoutes(graph, arguments_.ends, kShown);
+      auto routes = longEnough(suite::suggestRoutes(graph, arguments_.ends, kShown));
       if (arguments_.route > routes.size()) {
         throw InputError("--route is " + std::to_string(arguments_.route) + "; expected 1 to " +
                          std::to_string(routes.size()));
@@ -120,6 +135,27 @@ class ScenarioMaker {
     } catch (const InputError& error) {
       throw InputError(choice_.origin + ": " + error.what());
     }
+  }
+
+  /// Those on which an ego can be tested; all where the user says where the route starts or ends.
+  std::vector<suite::SuggestedRoute> longEnough(std::vector<suite::SuggestedRoute> routes) const {
+    constexpr double kLeast = 50.0;  // some 6 s at 8 m/s, the last 10 m of which count as complete
+    if (!arguments_.ends.from.empty() || !arguments_.ends.to.empty()) return routes;
+    const auto longest = *std::max_element(
+        routes.begin(), routes.end(),
+        [](const auto& left, const auto& right) { return left.length < right.length; });
+    if (longest.length < kLeast) {
+      throw InputError("no route to test an ego on: the best one, " +
+                       core::joinText(longest.edges, " ") + ", is only " +
+                       core::formatFixed(longest.length, 0) + " m long, and " +
+                       core::formatFixed(kLeast, 0) +
+                       " m are needed from the ego's start, 5 m behind the start of the first "
+                       "edge, to its goal, 5 m before the end of the last; give a network whose "
+                       "edges connect to such a way, or --from and --to if this one is meant");
+    }
+    const auto too_short = [](const suite::SuggestedRoute& route) { return route.length < kLeast; };
+    routes.erase(std::remove_if(routes.begin(), routes.end(), too_short), routes.end());
+    return routes;
   }
 
   void printRoutes(const map::RoadNetwork& network,
@@ -204,7 +240,10 @@ void addNewCommand(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{2147483647}));
   command->add_flag("--picture", arguments->picture,
                     "Also write NAME.svg: a map with the names of all edges");
-  command->add_flag("--overwrite", arguments->overwrite, "Replace files of that NAME");
+  command->add_flag(
+      "--overwrite", arguments->overwrite,
+      "Replace NAME.yaml, NAME.svg with --picture, and NAME.net.xml where the roads are "
+      "generated or converted; a SUMO network of yours stays");
   command->callback([arguments, &exit_code] {
     ScenarioMaker(*arguments).make();
     exit_code = ExitCode::kPassed;

@@ -21,8 +21,9 @@ double secondsBetween(std::chrono::steady_clock::time_point begin,
 
 }  // namespace
 
-Progress::Progress(double time_limit)
+Progress::Progress(double time_limit, bool grows)
     : time_limit_(time_limit),
+      grows_(grows),
       terminal_(::isatty(STDERR_FILENO) == 1),
       begin_(std::chrono::steady_clock::now()),
       last_(begin_) {}
@@ -37,11 +38,13 @@ void Progress::observe(const session::TickRecord& record) {
   const double wall = secondsBetween(begin_, now);
   const double factor = wall > 0.0 ? snapshot.time / wall : 0.0;
   const double left = factor > 0.0 ? (time_limit_ - snapshot.time) / factor : 0.0;
-  std::cerr << (terminal_ ? "\r" : "") << core::formatFixed(snapshot.time, 1) << " s of "
-            << core::formatFixed(time_limit_, 0) << " s simulated, " << core::formatFixed(factor, 1)
+  const std::string limit =
+      (grows_ ? " s of at most " : " s of ") + core::formatFixed(time_limit_, 0);
+  std::cerr << (terminal_ ? "\r" : "") << core::formatFixed(snapshot.time, 1)
+            << (ended ? "" : limit) << " s simulated, " << core::formatFixed(factor, 1)
             << " x real time, ";
   if (ended)
-    std::cerr << traffic::toText(snapshot.status) << "          \n";
+    std::cerr << traffic::toText(snapshot.status) << std::string(24, ' ') << "\n";
   else
     std::cerr << "at most " << core::formatFixed(left, 0) << " s left   "
               << (terminal_ ? "" : "\n");

@@ -18,12 +18,14 @@ namespace cdiff::cli {
 /// prints a line every 10 s of wall time.
 class Progress : public session::SessionObserver {
  public:
-  /// `time_limit`: the protocol's limit of simulated time [s].
-  explicit Progress(double time_limit);
+  /// `time_limit`: the longest that the protocol allows, in simulated time [s]; `grows`: with the
+  /// ego's progress, so that a session can time out before.
+  Progress(double time_limit, bool grows);
   void observe(const session::TickRecord& record) override;
 
  private:
   double time_limit_;
+  bool grows_;
   bool terminal_;
   std::chrono::steady_clock::time_point begin_;
   std::chrono::steady_clock::time_point last_;

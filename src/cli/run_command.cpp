@@ -177,7 +177,8 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   const session::ScenarioOptions& options = setup.options();
   page::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
                             output.folder);
-  Progress progress(session::longestTime(options.protocol, setup.egoRoute()));
+  Progress progress(session::longestTime(options.protocol, setup.egoRoute()),
+                    options.protocol.time_limit_speed_percent > 0.0);
   loop.addObserver(writer);
   if (!output.quiet) loop.addObserver(progress);
   BagRecording bag(setup, output, loop);
@@ -196,6 +197,9 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   printTable(writer, output);
   if (writer.result().verdict.outcome == record::Outcome::kNotJudged && options.verdict.judge)
     std::cerr << "cdiff: NOT JUDGED: the scenario has no rules, so exit code 0 means nothing\n";
+  const std::string untested = record::untestedText(writer.result());
+  if (!untested.empty())
+    std::cerr << "cdiff: " << untested << "; why, says report.html, 'Why others were no CBVs'\n";
   return !bag_error.empty() && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
 }
 

@@ -23,6 +23,7 @@ namespace {
 
 struct ValidateArguments {
   std::vector<std::string> scenarios;
+  std::vector<std::string> set;  ///< "key=value" each
   bool print = false;
   std::string group;  ///< print this group alone
   bool fast = false;  ///< do not start SUMO
@@ -63,6 +64,7 @@ bool validateOne(const std::string& scenario_name, const ValidateArguments& argu
   try {
     session::SessionRequest request;
     request.scenario = scenario_name;
+    request.set = arguments.set;
     const session::ScenarioOptions options = session::resolveRequest(request);
     const session::SessionSetup setup(options);
     if (options.ego_planner != planning::kExternalPlanner) setup.makeEgoPlanner();
@@ -105,6 +107,10 @@ void addValidateCommand(CLI::App& program, int& exit_code) {
       "validate", "Check scenarios up to the session's start, their traffic on SUMO included");
   command->add_option("scenarios", arguments->scenarios,
                       "Scenario files or names (default: all shipped ones)");
+  command
+      ->add_option("--set", arguments->set,
+                   "Any key of the scenarios as key=value; may be repeated")
+      ->allow_extra_args(false);
   command->add_flag("--print", arguments->print,
                     "Print all keys with their values, meaning and range; '# default' marks what "
                     "differs from it");

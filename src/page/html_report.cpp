@@ -56,6 +56,9 @@ Markup banner(const record::SessionResult& result) {
   for (const std::string& reason : result.verdict.reasons)
     content += element("p", {}, linkedTimes(reason));
   if (outcome == record::Outcome::kPassed) content += element("p", {}, metText(result));
+  const bool untested = !record::untestedText(result).empty();
+  const std::string headline =
+      headlineOf(outcome) + std::string(untested ? " \u00b7 0 CBVs: nothing was tested" : "");
   std::string story;
   for (const std::string& sentence : record::sessionStory(result)) story += sentence + " ";
   content += element("p", {{"class", "story"}}, linkedTimes(story));
@@ -63,7 +66,7 @@ Markup banner(const record::SessionResult& result) {
                     options.mode + " · seed " + std::to_string(options.seed) + " · ego " +
                         options.ego_planner + " · CBV " + options.cbv_planner + " · method " +
                         session::methodText(session::methodOf(options)),
-                    pageBanner(outcome, headlineOf(outcome), content));
+                    pageBanner(outcome, headline, content));
 }
 
 /// Below the verdict: a session that late answers went into cannot be repeated.

@@ -54,6 +54,12 @@ std::string releaseText(const std::string& reason) {
   return textOf(kTexts, reason);
 }
 
+std::string untestedText(const SessionResult& result) {
+  const bool asked = result.setup.options().max_cbv > 0;
+  if (!asked || !result.cbv.records().empty() || !endedByItself(result.status)) return "";
+  return "0 CBVs: nothing was tested: no vehicle was ever taken as CBV";
+}
+
 namespace {
 
 std::string drivenRoute(const SessionResult& result) {
@@ -64,6 +70,7 @@ std::string drivenRoute(const SessionResult& result) {
 }
 
 std::string approach(const SessionResult& result) {
+  if (const std::string untested = untestedText(result); !untested.empty()) return untested + ".";
   std::set<std::string> vehicles;
   for (const CbvRecord& record : result.cbv.records()) vehicles.insert(record.vehicle_id);
   if (vehicles.empty()) return "No vehicle was selected as CBV.";
@@ -139,7 +146,8 @@ std::string headRows(const SessionResult& result) {
          row("status", traffic::toText(result.status)) + holdUpRow(result) + row("time", time);
 }
 
-std::string measureRows(const metrics::SessionMeasures& measures) {
+std::string measureRows(const SessionResult& result) {
+  const metrics::SessionMeasures& measures = result.measures;
   namespace known = metrics::known;
   const auto count = [&](const metrics::MeasureDefinition& definition) {
     return std::to_string(measures.count(definition));
@@ -159,8 +167,9 @@ std::string measureRows(const metrics::SessionMeasures& measures) {
                                       "; ego standing " + count(known::kEgoStruckStanding) +
                                       ", braking avoids " + count(known::kEgoBrakingAvoids) +
                                       "; in " + fixed(known::kEgoDistance) + " m") +
-         row("CBVs",
-             count(known::kCbvCount) + " over " + count(known::kCbvDecisions) + " decisions") +
+         row("CBVs", count(known::kCbvCount) + " over " + count(known::kCbvDecisions) +
+                         " decisions" +
+                         (untestedText(result).empty() ? "" : ": NOTHING WAS TESTED")) +
          row("CBV collisions", count(known::kCbvCollisions) + " (" +
                                    count(known::kCbvEgoCollisions) + " with the ego)") +
          row("CBV off-road rate", text(known::kCbvOffRoad)) +
@@ -210,8 +219,7 @@ std::string measureText(const metrics::Measure& measure, int decimals) {
 }
 
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder) {
-  std::string text =
-      headRows(result) + measureRows(result.measures) + latencyRows(result.latencies);
+  std::string text = headRows(result) + measureRows(result) + latencyRows(result.latencies);
   const std::string late = latenessText(result.late);
   if (!late.empty()) text += row("late answers", late);
   text += faultRows(repeatedFaults(result.faults));

@@ -24,6 +24,10 @@ std::string releaseText(const std::string& reason);
 /// Plain text, not escaped.
 std::vector<std::string> sessionStory(const SessionResult& result);
 
+/// Of a session that was to have CBVs, drove to its end and had none: "0 CBVs: nothing was tested:
+/// ...". Empty for every other.
+std::string untestedText(const SessionResult& result);
+
 // The session's main measures as a table for a terminal.
 
 /// `folder` is where the files lie.

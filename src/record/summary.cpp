@@ -9,6 +9,7 @@
 #include "metrics/metric_registry.h"
 #include "planners/planner_by_slot.h"
 #include "record/repeated_faults.h"
+#include "record/session_text.h"
 #include "session/session_request.h"
 
 namespace cdiff::record {
@@ -59,7 +60,7 @@ Json egoObject(const metrics::SessionMeasures& measures) {
 
 /// What the vehicle or light is that somebody waits for.
 const char* reasonText(Wait::For reason) {
-  constexpr const char* kTexts[] = {"vehicle", "light", "stop_line", "nothing"};
+  constexpr const char* kTexts[] = {"vehicle", "light", "stop_line", "stop", "no_way", "nothing"};
   return kTexts[static_cast<std::size_t>(reason)];
 }
 
@@ -69,7 +70,9 @@ Json waitList(const WaitChain& chain) {
     list.push_back({{"who", wait.vehicle},
                     {"waits_for", reasonText(wait.reason)},
                     {"id", wait.obstacle.empty() ? Json(nullptr) : Json(wait.obstacle)},
-                    {"junction", wait.junction.empty() ? Json(nullptr) : Json(wait.junction)}});
+                    {"junction", wait.junction.empty() ? Json(nullptr) : Json(wait.junction)},
+                    {"yields", wait.yields},
+                    {"until", wait.until.empty() ? Json(nullptr) : Json(wait.until)}});
   }
   return list;
 }
@@ -82,6 +85,7 @@ Json holdUpObject(const SessionResult& result) {
   return {{"text", holdUpText(*found, result.setup, result.status)},
           {"begin_seconds", stood ? Json(found->begin) : Json(nullptr)},
           {"seconds", found->seconds},
+          {"crept_seconds", found->crept},
           {"at_end", found->at_end},
           {"chain", waitList(found->chain)},
           {"ring", found->chain.ring},
@@ -378,6 +382,7 @@ std::optional<std::string> contactPartner(const CbvRecord& record, const Session
 Json cbvObject(const SessionResult& result) {
   Json object = Json::object();
   addMeasures(object, "cbv", result.measures);
+  if (const std::string text = untestedText(result); !text.empty()) object["untested"] = text;
   object["selections"] = Json::array();
   for (const CbvRecord& record : result.cbv.records()) {
     object["selections"].push_back(selectionObject(record, result));

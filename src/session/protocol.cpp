@@ -32,12 +32,12 @@ void ProtocolOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"preset", "", "Rules whose values the keys below have unless given."}, preset,
                shippedProtocols());
   visitor.number({"time_limit", "s",
-                  "Simulated time after which the session has timed out; progress adds to it where "
-                  "time_limit_speed_percent is above 0."},
+                  "Simulated time after which the session has timed out. Given in a scenario, it "
+                  "holds as given, whatever the preset says of its growth."},
                  time_limit, 0.1, 86400.0);
   visitor.number({"time_limit_speed_percent", "%",
                   "The time limit grows by the time that the progress takes at this share of the "
-                  "lanes' limits; 0: it is fixed."},
+                  "lanes' limits; 0: it is fixed, as it is where time_limit alone is given."},
                  time_limit_speed_percent, 0.0, 100.0);
   visitor.number({"blocked_time", "s", "Standing this long ends the session as blocked."},
                  blocked_time, 0.1, 86400.0);

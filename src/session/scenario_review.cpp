@@ -5,19 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <pugixml.hpp>
 
-#include "core/file.h"
 #include "core/text.h"
+#include "session/demand_file.h"
 #include "session/session_request.h"
 #include "session/world.h"
 
 namespace cdiff::session {
 namespace {
-
-bool hasDemandFile(const ScenarioOptions& options) {
-  return options.demand != "generated" && options.demand != "none";
-}
 
 /// How far the route is driven within a time [%].
 double percentWithin(const ScenarioOptions& options, const map::Route& route, double limit) {
@@ -41,38 +36,40 @@ std::string timeWarning(const SessionSetup& setup) {
          core::formatNumber(options.target_speed) + " m/s and the lanes' limits, and the session " +
          "ends after " + core::formatFixed(limit, 0) + " s, at " +
          core::formatFixed(percentWithin(options, route, limit), 0) +
-         " % at most; set protocol.time_limit, or protocol.preset: " + kUsualProtocol +
-         ", or give a shorter route";
+         " % at most; set a longer protocol.time_limit, or leave it out and set protocol.preset: " +
+         kUsualProtocol + ", or give a shorter route";
 }
 
-double numberOf(const pugi::xml_node& node, const char* attribute, double absent) {
-  return core::parseNumber(node.attribute(attribute).value()).value_or(absent);
-}
-
-/// Vehicles of a flow from `begin` to `end` [s].
-double vehiclesOfFlow(const pugi::xml_node& flow, double begin, double end) {
-  const double from = numberOf(flow, "begin", 0.0);
-  const double until = std::max(numberOf(flow, "end", 86400.0), from + 1e-3);
-  const double share = std::max(0.0, std::min(end, until) - std::max(begin, from));
-  const double period = numberOf(flow, "period", 0.0);
-  if (flow.attribute("number")) return numberOf(flow, "number", 0.0) * share / (until - from);
-  if (period > 0.0) return share / period;
-  return share * (numberOf(flow, "vehsPerHour", 0.0) / 3600.0 + numberOf(flow, "probability", 0.0));
-}
-
-/// Vehicles that a demand file has depart from `begin` to `end` [s].
-double vehiclesAsked(const std::string& file, double begin, double end) {
-  const std::string text = core::readFile(file, "demand file");
-  pugi::xml_document document;
-  document.load_buffer(text.data(), text.size());
-  double asked = 0.0;
-  for (const pugi::xml_node& element : document.child("routes").children()) {
-    const std::string kind = element.name();
-    const double departure = numberOf(element, "depart", -1.0);
-    if (kind == "flow") asked += vehiclesOfFlow(element, begin, end);
-    if (kind == "vehicle" || kind == "trip") asked += departure >= begin && departure <= end;
+/// Vehicles that the lanes for cars hold at a standstill.
+double jamCapacity(const map::RoadNetwork& network) {
+  constexpr double kJamSpacing = 7.5;  // a vehicle of 5 m and SUMO's gap of 2.5 m [m]
+  double length = 0.0;
+  for (const map::Lane& lane : network.lanes()) {
+    if (lane.routable && !lane.internal) length += lane.centerline.length();
   }
-  return asked;
+  return length / kJamSpacing;
+}
+
+constexpr double kCrowd = 1000.0;  ///< vehicles of a demand file that no network is asked about
+
+/// Of a demand file that asks for far more vehicles than the network holds, or than SUMO drives at
+/// a useful speed.
+std::string crowdWarning(const SessionSetup& setup) {
+  constexpr double kMost = 20000.0;
+  const ScenarioOptions& options = setup.options();
+  if (!hasDemandFile(options)) return "";
+  const double seconds = options.traffic.warm_up + longestTime(options.protocol, setup.egoRoute());
+  const double asked =
+      DemandFile(options.demand).vehicles(options.begin_time, options.begin_time + seconds);
+  const double held = jamCapacity(setup.network());
+  if (asked <= kCrowd || (asked <= held && asked <= kMost)) return "";
+  return "demand '" + options.demand + "' has " + core::formatFixed(asked, 0) +
+         " vehicles depart within the session's " + core::formatFixed(seconds, 0) +
+         " s, and the network's lanes hold " + core::formatFixed(held, 0) +
+         " bumper to bumper: the roads jam, the others wait outside, and the session is slow; "
+         "give at most " +
+         core::formatFixed(std::min(kMost, 0.2 * held), 0) +
+         " (a fifth of that) for traffic that flows";
 }
 
 /// Drives what the demand file brings, without an ego.
@@ -91,7 +88,7 @@ TrafficTrial driveDemand(const SessionSetup& setup, double patience) {
     trial.wall = std::chrono::duration<double>(Clock::now() - begin).count();
   }
   trial.asked =
-      vehiclesAsked(options.demand, options.begin_time, options.begin_time + trial.simulated);
+      DemandFile(options.demand).vehicles(options.begin_time, options.begin_time + trial.simulated);
   return trial;
 }
 
@@ -119,6 +116,8 @@ std::vector<std::string> scenarioWarnings(const SessionSetup& setup) {
   }
   const std::string time = timeWarning(setup);
   if (!time.empty()) warnings.push_back(time);
+  const std::string crowd = crowdWarning(setup);
+  if (!crowd.empty()) warnings.push_back(crowd);
   return warnings;
 }
 
@@ -137,7 +136,6 @@ std::vector<std::string> trialWarnings(const ScenarioOptions& options, const Tra
                                       core::formatNumber(options.begin_time) + " s) are dropped"
                                 : ": there is no room near the ego's route"));
   }
-  constexpr double kCrowd = 1000.0;
   if (trial.asked > kCrowd && trial.asked > 4.0 * static_cast<double>(trial.most)) {
     warnings.push_back("the demand has " + core::formatFixed(trial.asked, 0) +
                        " vehicles depart in the first " + core::formatFixed(trial.simulated, 0) +

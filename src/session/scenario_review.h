@@ -20,7 +20,8 @@ bool hasRules(const VerdictOptions& verdict);
 double drivingTime(const ScenarioOptions& options, const map::Route& route);
 
 /// One sentence for each thing that is allowed and seldom meant: no rules, a route that takes
-/// longer than the time limit. Each says what to do.
+/// longer than the time limit, a demand file with far more vehicles than the network holds. Each
+/// says what to do.
 std::vector<std::string> scenarioWarnings(const SessionSetup& setup);
 
 /// What a scenario's traffic did on the simulator, without the ego.

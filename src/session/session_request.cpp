@@ -297,6 +297,19 @@ void addPresets(const ScenarioOptions& first, const MethodOptions& method, Scena
   planning::nameTrackers(first.planner_options, base.planner_options);
 }
 
+/// A time limit that the user gives holds as given: it grows only where its growth is given, too.
+void fixTimeLimit(const SessionRequest& request, ScenarioOptions base, ScenarioOptions& options) {
+  if (options.protocol.time_limit_speed_percent <= 0.0) return;
+  // What was given is the same on top of any other base.
+  base.protocol.time_limit += 1.0;
+  base.protocol.time_limit_speed_percent += 1.0;
+  const ProtocolOptions other = applyRequest(request, base).protocol;
+  const ProtocolOptions& protocol = options.protocol;
+  if (other.time_limit == protocol.time_limit &&
+      other.time_limit_speed_percent != protocol.time_limit_speed_percent)
+    options.protocol.time_limit_speed_percent = 0.0;
+}
+
 }  // namespace
 
 ScenarioOptions defaultScenario() {
@@ -313,6 +326,7 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
   ScenarioOptions base = unchosenBase(method);
   addPresets(applyRequest(request, base), method, base);
   ScenarioOptions options = applyRequest(request, base);
+  fixTimeLimit(request, base, options);
   fillSpeedTarget(options.metrics);
   options.validate();
   return options;

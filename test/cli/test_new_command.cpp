@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/cdiff_command.h"
+#include "support/network_text.h"
 
 namespace cdiff::cli {
 namespace {
@@ -55,7 +56,15 @@ TEST_F(NewCommand, NeverReplacesAFileUnasked) {
   write("mine.yaml", "mine");
   EXPECT_EQ(cdiff({"new", path("mine"), "--crossing"}), 3);
   expectOutput("'" + path("mine.yaml") + "' is there already");
+  expectOutput("to replace this file");
+  write("mine.net.xml", "a network of mine");
+  EXPECT_EQ(cdiff({"new", path("mine"), "--crossing"}), 3);
+  expectOutput("'" + path("mine.yaml") + "' and '" + path("mine.net.xml") + "' are there already");
+  EXPECT_EQ(cdiff({"new", path("mine"), "--network", path("mine.net.xml")}), 3);
+  expectOutput("'" + path("mine.yaml") + "' is there already");
+  expectOutput("the network '" + path("mine.net.xml") + "' stays as it is");
   EXPECT_EQ(core::readFile(path("mine.yaml"), "file"), "mine");
+  fs::remove(path("mine.net.xml"));
   EXPECT_EQ(cdiff({"new", path("mine"), "--network", "roundabout", "--overwrite"}), 0) << output();
   EXPECT_FALSE(fs::exists(path("mine.net.xml"))) << "a shipped network is named";
   EXPECT_EQ(cdiff({"new", path("mine.yaml"), "--crossing"}), 3);
@@ -65,6 +74,18 @@ TEST_F(NewCommand, NeverReplacesAFileUnasked) {
   EXPECT_EQ(cdiff({"new", path("two"), "--crossing", "--grid"}), 3);
   EXPECT_EQ(cdiff({"new", path("two")}), 3);
   expectNothing("two");
+}
+
+// Ways of 40 m, 45 m and 12 m that lead nowhere.
+TEST_F(NewCommand, RefusesANetworkWithoutARouteThatTestsAnything) {
+  write("stubs.net.xml", test::NetworkText()
+                             .edge("one", {"0,0 40,0"}, "a", "b")
+                             .edge("two", {"0,50 45,50"}, "c", "d")
+                             .edge("three", {"0,90 12,90"}, "e", "f")
+                             .text());
+  EXPECT_EQ(cdiff({"new", path("stub"), "--network", path("stubs.net.xml")}), 3);
+  expectOutput("the best one, two, is only 35 m long, and 50 m are needed");
+  expectNothing("stub");
 }
 
 /// A pond with a footpath.
@@ -112,12 +133,31 @@ TEST_F(NewCommand, AScenarioOfNetworkAndRouteSaysLoudlyThatItCannotFail) {
   expectOutput("traffic not tried on SUMO (--fast)");
   expectOutput("NO VERDICT RULES");
   EXPECT_EQ(cdiff({"run", path("bare.yaml"), "--results", path("results"), "--quiet", "--set",
-                   "cbv_planner=pdm_lite", "--set", "protocol.time_limit=1", "--set",
-                   "protocol.time_limit_speed_percent=0"}),
+                   "cbv_planner=pdm_lite", "--set", "protocol.time_limit=1"}),
             0);
   expectOutput("cdiff: NOT JUDGED");
   EXPECT_NE(core::readFile(path("results/report.html"), "report").find("the session cannot fail"),
             std::string::npos);
+}
+
+TEST_F(NewCommand, ASessionWithoutCbvsSaysThatNothingWasTested) {
+  ASSERT_EQ(cdiff({"new", path("town"), "--grid"}), 0) << output();
+  std::vector<std::string> run = {
+      "run",       path("town.yaml"), "--quiet", "--overwrite",
+      "--results", path("results"),   "--set",   "cbv_planner=pdm_lite",
+      "--set",     "demand=none",     "--set",   "protocol.time_limit=1"};
+  cdiff(run);
+  expectOutput("0 CBVs: nothing was tested");
+  const auto summary = core::readFile(path("results/summary.json"), "summary");
+  EXPECT_TRUE(nlohmann::json::parse(summary)["cbv"].contains("untested")) << summary;
+  EXPECT_NEAR(nlohmann::json::parse(summary)["simulated_seconds"].get<double>(), 1.0, 1e-6)
+      << "the limit that was given";
+  EXPECT_NE(
+      core::readFile(path("results/report.html"), "report").find("0 CBVs: nothing was tested"),
+      std::string::npos);
+  run.insert(run.end(), {"--set", "max_cbv=0"});
+  cdiff(run);
+  EXPECT_EQ(output().find("nothing was tested"), std::string::npos) << output();
 }
 
 TEST_F(NewCommand, ADemandThatSumoRefusesIsRefusedByValidate) {
@@ -136,6 +176,13 @@ TEST_F(NewCommand, ValidatePrintsOneGroupAndMarksWhatDiffers) {
   EXPECT_EQ(cdiff({"validate", "crossing_left_turn", "--fast", "--group", "traffic"}), 0);
   expectOutput("  density: 18  # default: 30\n");
   expectOutput("  warm_up: 30\n");
+  EXPECT_EQ(cdiff({"validate", "crossing_left_turn", "--fast", "--group", "traffic", "--set",
+                   "traffic.density=7", "--set", "traffic.warm_up=4"}),
+            0);
+  expectOutput("  density: 7  # default: 30\n");
+  expectOutput("  warm_up: 4");
+  EXPECT_EQ(cdiff({"validate", "crossing_left_turn", "--fast", "--set", "traffic.densiti=7"}), 3);
+  expectOutput("the nearest known key is 'traffic.density'");
   EXPECT_EQ(output().find("protocol:"), std::string::npos) << output();
   EXPECT_EQ(cdiff({"validate", "crossing_left_turn", "--fast", "--group", "traffik"}), 3);
   expectOutput("no group 'traffik'; did you mean 'traffic'?");

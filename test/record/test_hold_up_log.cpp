@@ -91,6 +91,27 @@ TEST_F(HoldUps, OfATimeOutAreTheLongestStandstillAndTheTime) {
     expectIn(sentence, part);
 }
 
+// Stands in ticks 20 to 59 and 90 to 119, and creeps at 0.8 m/s in the 30 ticks between.
+TEST_F(HoldUps, CreepingIsStanding) {
+  for (std::uint64_t tick = 0; tick <= 120; ++tick) {
+    const double speed = tick < 20 ? 8.0 : (tick >= 60 && tick < 90 ? 0.8 : 0.0);
+    traffic::TrafficSnapshot now = snapshot(tick, speed, 0.0);
+    if (tick == 120) now.status = SessionStatus::kTimedOut;
+    log_.observe(now);
+  }
+  ASSERT_TRUE(log_.found());
+  EXPECT_TRUE(log_.found()->at_end);
+  EXPECT_NEAR(log_.found()->seconds, 5.0, 1e-9);
+  EXPECT_NEAR(log_.found()->crept, 1.5, 1e-9);
+  EXPECT_NEAR(log_.found()->stood, 101 * 0.05, 1e-9);  // ticks 20 to 120
+  expectIn(text(SessionStatus::kTimedOut), "stood 5.0 s (creeping for 1.5 s of it) behind ahead");
+}
+
+TEST_F(HoldUps, NameTheBackgroundTrafficAtTheEnd) {
+  ASSERT_TRUE(play(100, SessionStatus::kBlocked));
+  expectIn(text(SessionStatus::kBlocked), "ahead is background traffic");
+}
+
 TEST_F(HoldUps, WithAFreeRoadAreThePlannersOwn) {
   for (std::uint64_t tick = 0; tick <= 60; ++tick) {
     traffic::TrafficSnapshot now = test::snapshotWithEgo(tick, {50.0});

@@ -47,7 +47,7 @@ TEST(SessionStory, ReportsRouteApproachAndContact) {
 TEST(SessionStory, SaysWhenThereWasNoCbvAndNoContact) {
   const std::vector<std::string> story = storyUntil(20);
   ASSERT_EQ(story.size(), 4u);
-  EXPECT_EQ(story[2], "No vehicle was selected as CBV.");
+  EXPECT_EQ(story[2], "0 CBVs: nothing was tested: no vehicle was ever taken as CBV.");
   EXPECT_EQ(story[3], "No vehicle touched the ego.");
 }
 

@@ -4,6 +4,8 @@
 // boxes are 4.5 x 1.8 m; the ego's front is 2.25 m ahead of its center.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "record/crossing_streets.h"
 #include "record/logs/wait_chain.h"
 
@@ -118,6 +120,106 @@ TEST_F(WaitChains, AVehicleBeyondTheGoalIsInTheWay) {
   expectWait(chain().waits.at(0), "ego", For::kVehicle, "after", "");
   snapshot_.vehicles[1].state.position.y() = 3.5;
   expectWait(chain().waits.at(0), "ego", For::kNothing, "", "");
+}
+
+// b's front is 2.75 m before the junction of 30 m. The vehicle behind it leaves 2.75 m, then 12.75
+// m: b needs its 4.5 m and the gap of 3 m.
+TEST_F(WaitChains, AVehicleBehindTheJunctionThatLeavesNoRoomIsInTheWay) {
+  put(65.0);
+  add("b", {80.0, 0.0}, "west_0");
+  add("parked", {120.0, 0.0}, "east_0");
+  ASSERT_EQ(chain().waits.size(), 3U);
+  expectWait(chain().waits[1], "b", For::kVehicle, "parked", "j");
+  expectWait(chain().waits[2], "parked", For::kNothing, "", "");
+  snapshot_.vehicles[2].state.speed = 3.0;  // drives away
+  expectWait(chain().waits.at(1), "b", For::kNothing, "", "j");
+  snapshot_.vehicles[2] = test::vehicle("parked", {130.0});
+  snapshot_.vehicles[2].lane_id = "east_0";
+  expectWait(chain().waits.at(1), "b", For::kNothing, "", "j");
+}
+
+TEST_F(WaitChains, TheEgoIsHeldUpFromBehindTheJunctionToo) {
+  put(80.0);
+  add("parked", {120.0, 0.0}, "east_0");
+  expectWait(chain().waits.at(0), "ego", For::kVehicle, "parked", "j");
+  snapshot_.vehicles[1].state.position.x() = 130.0;
+  expectWait(chain().waits.at(0), "ego", For::kNothing, "", "j");
+}
+
+TEST_F(WaitChains, ALaneThatLeadsNowhereIsAReason) {
+  put(180.0);
+  snapshot_.vehicles[0].lane_id = "east_0";
+  add("last", {195.0, 0.0}, "east_0");
+  expectWait(chain().waits.at(1), "last", For::kNoWay, "east_0", "");
+}
+
+// From west on to east or north, and a lane back from east to west beside the first.
+class WaitChainsWithDemand : public WaitChains {
+ protected:
+  WaitChainsWithDemand() : WaitChains(65.0) {
+    add("b", {80.0, 0.0}, "west_0");
+    add("parked", {120.0, 0.0}, "east_0");  // its front is 7.25 m behind the lane's start
+  }
+  /// `route` of b, and where the other has a stop.
+  WaitChain chainFor(const std::string& route, const std::string& stop, double clock) const {
+    const std::string file = (folder_.path() / "cars.rou.xml").string();
+    std::ofstream(file) << "<routes><vehicle id=\"b\" depart=\"0\"><route edges=\"" + route +
+                               "\"/></vehicle><flow id=\"f\" begin=\"0\" number=\"1\"/>"
+                               "<vehicle id=\"parked\" depart=\"0\"><route edges=\"east\"/>" +
+                               stop + "</vehicle></routes>";
+    const session::DemandFile demand(file);
+    return waitChain(snapshot_, network_, streets_.route, {&demand, clock});
+  }
+
+  test::TemporaryFolder folder_;
+  map::RoadNetwork network_ =
+      map::RoadNetwork::fromText(test::NetworkText()
+                                     .edge("west", {"0,0 85,0"}, "a", "j")
+                                     .edge("east", {"115,0 200,0"}, "j", "b")
+                                     .edge("north", {"100,15 100,100"}, "j", "d")
+                                     .edge("back", {"200,5 115,5"}, "b", "j")
+                                     .edge("away", {"85,5 0,5"}, "j", "a")
+                                     .edge(":j_0", {"85,0 115,0"})
+                                     .edge(":j_1", {"85,0 95,2 100,15"})
+                                     .edge(":j_2", {"115,5 85,5"})
+                                     .junction("j", "85,-5 85,10 115,10 115,-5")
+                                     .connection("west_0", "east_0", ":j_0_0")
+                                     .connection("west_0", "north_0", ":j_1_0", 'l')
+                                     .connection("back_0", "away_0", ":j_2_0")
+                                     .text(),
+                                 "streets");
+};
+
+TEST_F(WaitChainsWithDemand, AVehicleIsHeldUpOnItsOwnRouteAlone) {
+  expectWait(chainFor("west east", "", 0.0).waits.at(1), "b", For::kVehicle, "parked", "j");
+  expectWait(chainFor("west north", "", 0.0).waits.at(1), "b", For::kNothing, "", "j");
+  // Where nobody knows its route, the full exit is the best guess.
+  expectWait(chainFor("elsewhere", "", 0.0).waits.at(1), "b", For::kVehicle, "parked", "j");
+}
+
+TEST_F(WaitChainsWithDemand, AStopOfTheDemandIsAReasonAsLongAsItLasts) {
+  const std::string stop = "<stop lane=\"east_0\" startPos=\"0\" endPos=\"8\" until=\"600\"/>";
+  const WaitChain during = chainFor("west east", stop, 599.0);
+  expectWait(during.waits.at(2), "parked", For::kStop, "east_0", "");
+  EXPECT_EQ(during.waits[2].until, "until 600 s of SUMO's clock");
+  expectWait(chainFor("west east", stop, 601.0).waits.at(2), "parked", For::kNothing, "", "");
+  const std::string elsewhere = "<stop lane=\"east_0\" startPos=\"-20\" endPos=\"-1\"/>";
+  expectWait(chainFor("west east", elsewhere, 0.0).waits.at(2), "parked", For::kNothing, "", "");
+}
+
+TEST_F(WaitChainsWithDemand, OnlyWaysThatMeetItsOwnAreLetPass) {
+  add("oncoming", {100.0, 5.0, 180.0}, ":j_2_0");
+  expectWait(chainFor("west north", "", 0.0).waits.at(1), "b", For::kVehicle, "oncoming", "j");
+  snapshot_.vehicles[2].state.position.x() = 150.0;  // room to the east
+  expectWait(chainFor("west east", "", 0.0).waits.at(1), "b", For::kNothing, "", "j");
+}
+
+TEST_F(WaitChainsWithDemand, AVehicleYieldsToOneThatComes) {
+  add("oncoming", {120.0, 5.0, 180.0, 4.0}, "back_0");
+  const WaitChain found = chainFor("west north", "", 0.0);
+  expectWait(found.waits.at(1), "b", For::kVehicle, "oncoming", "j");
+  EXPECT_TRUE(found.waits[1].yields);
+  EXPECT_FALSE(chainFor("west east", "", 0.0).waits.at(1).yields) << "blocked by parked";
 }
 
 TEST_F(WaitChains, WithoutAnEgoThereIsNone) {

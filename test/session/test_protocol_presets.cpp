@@ -114,6 +114,22 @@ TEST_F(ProtocolOfAScenario, LiesBelowItsOwnKeys) {
   EXPECT_EQ(options.infractions.speed_checkpoints, 4);
 }
 
+TEST_F(ProtocolOfAScenario, HoldsATimeLimitThatIsGivenAlone) {
+  const ProtocolOptions given = resolved("protocol:\n  preset: any_length\n  time_limit: 20\n");
+  EXPECT_EQ(given.time_limit, 20.0);
+  EXPECT_EQ(given.time_limit_speed_percent, 0.0);
+  const ProtocolOptions same = resolved("protocol:\n  time_limit: 60\n");  // the preset's value
+  EXPECT_EQ(same.time_limit_speed_percent, 0.0);
+  const ProtocolOptions both =
+      resolved("protocol:\n  time_limit: 20\n  time_limit_speed_percent: 20\n");
+  EXPECT_EQ(both.time_limit_speed_percent, 20.0);
+  const ProtocolOptions none = resolved("protocol:\n  blocked_time: 7\n");
+  EXPECT_EQ(none.time_limit, 60.0);
+  EXPECT_EQ(none.time_limit_speed_percent, 20.0);
+  request_.set = {"protocol.time_limit=30"};
+  EXPECT_EQ(resolved("protocol:\n  preset: leaderboard_2_0\n").time_limit_speed_percent, 0.0);
+}
+
 TEST_F(ProtocolOfAScenario, IsChosenByAnOverrideBelowTheFilesKeys) {
   request_.set = {"protocol.preset=bench2drive", "protocol.deviation_percent=12"};
   const ProtocolOptions options = resolved("protocol:\n  blocked_time: 7\n");

@@ -65,6 +65,24 @@ TEST_F(ScenarioReview, WarnsOfARouteThatTheTimeLimitCutsOff) {
   EXPECT_NE(warnings().at(0).find("take 50 s"), std::string::npos) << warnings()[0];
 }
 
+// One lane of 600 m holds 80 vehicles of 7.5 m.
+TEST_F(ScenarioReview, WarnsOfADemandThatTheNetworkCannotHold) {
+  const std::string file = (folder_.path() / "cars.rou.xml").string();
+  options_.demand = file;
+  const auto warningsFor = [&](int number) {
+    std::ofstream(file) << "<routes><route id=\"r\" edges=\"road\"/><flow id=\"f\" route=\"r\" "
+                           "begin=\"0\" end=\"10\" number=\""
+                        << number << "\"/></routes>";
+    return warnings();
+  };
+  EXPECT_EQ(warningsFor(900).size(), 0U);
+  const std::vector<std::string> found = warningsFor(100000);
+  ASSERT_EQ(found.size(), 1U);
+  for (const std::string& part : {"'" + file + "' has 100000 vehicles depart",
+                                  std::string("hold 80"), std::string("give at most 16")})
+    EXPECT_NE(found[0].find(part), std::string::npos) << found[0];
+}
+
 TEST(TrialWarnings, NameWhatSuitsNoSession) {
   ScenarioOptions options;
   options.demand = "cars.rou.xml";

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "session/scenario_review.h"
 
 namespace cdiff::record {
@@ -31,6 +32,7 @@ std::string atJunction(const std::string& junction) {
 std::string waitText(const Wait& wait) {
   switch (wait.reason) {
     case Wait::For::kVehicle:
+      if (wait.yields) return "yields" + atJunction(wait.junction) + " to " + wait.obstacle;
       return wait.junction.empty()
                  ? "stands behind " + wait.obstacle
                  : "stands" + atJunction(wait.junction) + ", blocked by " + wait.obstacle;
@@ -38,6 +40,10 @@ std::string waitText(const Wait& wait) {
       return "waits for light " + wait.obstacle + atJunction(wait.junction);
     case Wait::For::kStopLine:
       return "waits at the stop line" + atJunction(wait.junction);
+    case Wait::For::kStop:
+      return "is at a SUMO stop of the demand on lane " + wait.obstacle + ", " + wait.until;
+    case Wait::For::kNoWay:
+      return "stands at the end of lane " + wait.obstacle + ", from which no lane leads on";
     case Wait::For::kNothing:
       break;
   }
@@ -48,12 +54,15 @@ std::string waitText(const Wait& wait) {
 std::string placeText(const Wait& wait, const std::string& planner) {
   switch (wait.reason) {
     case Wait::For::kVehicle:
+      if (wait.yields) return atJunction(wait.junction) + ", where it yields to " + wait.obstacle;
       return (wait.junction.empty() ? " behind " : atJunction(wait.junction) + ", blocked by ") +
              wait.obstacle;
     case Wait::For::kLight:
       return " for light " + wait.obstacle + atJunction(wait.junction);
     case Wait::For::kStopLine:
       return " at the stop line" + atJunction(wait.junction);
+    case Wait::For::kStop:
+    case Wait::For::kNoWay:
     case Wait::For::kNothing:
       break;
   }
@@ -61,24 +70,46 @@ std::string placeText(const Wait& wait, const std::string& planner) {
          ", held it";
 }
 
-/// The vehicles from the head of the ego's queue on, and what each waits for.
+/// The vehicles from the head of the ego's queue on, and what each waits for: the first ones and
+/// the last one.
 std::string headText(const WaitChain& chain) {
   constexpr std::size_t kShown = 3;
   const std::size_t queue = chain.queue().size();
   const std::size_t first = std::max<std::size_t>(1, queue);
   std::string text;
-  for (std::size_t i = first; i < std::min(chain.waits.size(), first + kShown); ++i) {
+  for (std::size_t i = first; i < chain.waits.size(); ++i) {
+    const bool last = i + 1 == chain.waits.size();
+    if (i >= first + kShown && !last) continue;
     const bool head = i == queue && queue > 1;
-    text += "; " + (head ? "head of the queue of " + std::to_string(queue) + ": " : "") +
+    text += i > first + kShown ? "; ... " : "; ";
+    text += (head ? "head of the queue of " + std::to_string(queue) + ": " : "") +
             chain.waits[i].vehicle + " " + waitText(chain.waits[i]);
   }
   if (chain.ring) text += "; they wait for each other in a ring";
   return text;
 }
 
+/// Who is to blame at the end of the chain, where no CBV is in it.
+std::string causeText(const WaitChain& chain) {
+  const Wait& last = chain.waits.back();
+  const std::string& cause =
+      last.reason == Wait::For::kVehicle && !chain.ring ? last.obstacle : last.vehicle;
+  return "no CBV had a part in it, " + cause + " is background traffic";
+}
+
+std::optional<session::DemandFile> demandOf(const session::ScenarioOptions& options) {
+  if (!session::hasDemandFile(options)) return std::nullopt;
+  try {
+    return session::DemandFile(options.demand);
+  } catch (const core::InputError&) {
+    return std::nullopt;  // a recording's; the session itself would not have started
+  }
+}
+
 }  // namespace
 
-HoldUpLog::HoldUpLog(const session::SessionSetup& setup) : setup_(setup) {}
+HoldUpLog::HoldUpLog(const session::SessionSetup& setup)
+    : setup_(setup), demand_(demandOf(setup.options())) {}
 
 void HoldUpLog::observe(const traffic::TrafficSnapshot& snapshot) {
   for (const Vehicle& vehicle : snapshot.vehicles) {
@@ -87,21 +118,37 @@ void HoldUpLog::observe(const traffic::TrafficSnapshot& snapshot) {
   const Vehicle* ego = snapshot.ego();
   if (ego == nullptr) return;
   noteMotion(snapshot, *ego);
-  const bool stands = ego->state.speed < setup_.options().protocol.blocked_speed;
-  if (!stands) standing_since_.reset();
-  if (stands && !standing_since_) standing_since_ = snapshot.time;
-  if (stands) stood_ += setup_.options().simulation_step;
+  noteStandstill(snapshot, ego->state.speed);
   const bool ends =
       snapshot.status == SessionStatus::kBlocked || snapshot.status == SessionStatus::kTimedOut;
   const double phase = std::fmod(snapshot.time + kEndRounding, kSample);
   if (!ends && phase >= setup_.options().simulation_step) return;
-  const WaitChain chain = waitChain(snapshot, setup_.network(), setup_.egoRoute());
-  if (stands) {
+  const WaitChain chain = chainAt(snapshot);
+  if (standing_since_) {
     const HoldUp now = standstill(snapshot, chain);
     if (!longest_ || now.seconds >= longest_->seconds) longest_ = now;
   }
-  noteSlowness(*ego, stands, chain);
+  noteSlowness(*ego, standing_since_.has_value(), chain);
   if (ends) conclude(snapshot, chain);
+}
+
+void HoldUpLog::noteStandstill(const traffic::TrafficSnapshot& snapshot, double speed) {
+  const double still = setup_.options().protocol.blocked_speed;
+  if (speed >= std::max(still, kCreepSpeed)) standing_since_.reset();
+  if (speed < still && !standing_since_) {
+    standing_since_ = snapshot.time;
+    crept_ = 0.0;
+  }
+  if (!standing_since_) return;
+  stood_ += setup_.options().simulation_step;
+  if (speed >= still) crept_ += setup_.options().simulation_step;
+}
+
+WaitChain HoldUpLog::chainAt(const traffic::TrafficSnapshot& snapshot) const {
+  const session::ScenarioOptions& options = setup_.options();
+  const KnownDemand demand{demand_ ? &*demand_ : nullptr,
+                           options.begin_time + options.traffic.warm_up + snapshot.time};
+  return waitChain(snapshot, setup_.network(), setup_.egoRoute(), demand);
 }
 
 void HoldUpLog::noteMotion(const traffic::TrafficSnapshot& snapshot, const Vehicle& ego) {
@@ -132,6 +179,7 @@ HoldUp HoldUpLog::standstill(const traffic::TrafficSnapshot& snapshot,
   HoldUp hold_up;
   hold_up.begin = *standing_since_;
   hold_up.seconds = snapshot.time - *standing_since_;
+  hold_up.crept = crept_;
   hold_up.chain = chain;
   if (company_)
     hold_up.traffic_still = snapshot.time - traffic_still_since_.value_or(snapshot.time);
@@ -166,13 +214,15 @@ namespace {
 
 std::string standstillText(const HoldUp& hold_up, const session::SessionSetup& setup) {
   const WaitChain& chain = hold_up.chain;
-  std::string text = "The ego stood " + secondsText(hold_up.seconds) +
+  const std::string crept =
+      hold_up.crept < kShort ? "" : " (creeping for " + secondsText(hold_up.crept) + " of it)";
+  std::string text = "The ego stood " + secondsText(hold_up.seconds) + crept +
                      (hold_up.at_end ? "" : " from " + secondsText(hold_up.begin) + " on") +
                      placeText(chain.waits.front(), setup.options().ego_planner) + headText(chain);
   if (hold_up.traffic_still && *hold_up.traffic_still >= kShort)
     text += "; the traffic around had not moved for " + secondsText(*hold_up.traffic_still);
   if (chain.waits.front().reason == Wait::For::kVehicle) {
-    text += hold_up.cbvs.empty() ? "; no CBV had a part in it"
+    text += hold_up.cbvs.empty() ? "; " + causeText(chain)
                                  : "; CBV with a part in it: " + core::joinText(hold_up.cbvs, ", ");
   }
   return text + ".";
@@ -188,7 +238,10 @@ std::string timeText(const HoldUp& hold_up, const session::SessionSetup& setup) 
     text += "; for " + secondsText(hold_up.held_behind_seconds) + " of this " +
             hold_up.held_behind + " was before it";
   }
-  return text + "; its route takes " + secondsText(session::drivingTime(setup.options(), route)) +
+  const session::ScenarioOptions& options = setup.options();
+  text += "; the time limit was " + core::formatNumber(options.protocol.time_limit) + " s" +
+          (options.protocol.time_limit_speed_percent > 0.0 ? " and what its progress added" : "");
+  return text + "; its route takes " + secondsText(session::drivingTime(options, route)) +
          " at target speed.";
 }
 

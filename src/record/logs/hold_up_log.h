@@ -13,12 +13,16 @@
 
 namespace cdiff::record {
 
+/// An ego that stands and then moves slower than this goes on standing [m/s].
+inline constexpr double kCreepSpeed = 1.0;
+
 /// What held the ego up in a session that ended blocked or timed out, from traffic data alone.
 /// Times are simulated [s].
 struct HoldUp {
   double begin = 0.0;       ///< of the standstill; of a session without one: 0
-  double seconds = 0.0;     ///< how long the ego stood there
-  double stood = 0.0;       ///< how long it stood in the whole session
+  double seconds = 0.0;     ///< how long the ego stood there, slower than kCreepSpeed at any time
+  double crept = 0.0;       ///< part of this in which it crept: faster than protocol.blocked_speed
+  double stood = 0.0;       ///< how long it stood or crept in the whole session
   double slow = 0.0;        ///< how long it drove slower than half its target speed
   std::string held_behind;  ///< the vehicle that was before it for most of both; may be empty
   double held_behind_seconds = 0.0;
@@ -42,13 +46,18 @@ class HoldUpLog {
   const std::optional<HoldUp>& found() const { return found_; }
 
  private:
+  void noteStandstill(const traffic::TrafficSnapshot& snapshot, double speed);
   void noteMotion(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& ego);
   void noteSlowness(const traffic::Vehicle& ego, bool stands, const WaitChain& chain);
   HoldUp standstill(const traffic::TrafficSnapshot& snapshot, const WaitChain& chain) const;
   void conclude(const traffic::TrafficSnapshot& snapshot, const WaitChain& chain);
 
+  WaitChain chainAt(const traffic::TrafficSnapshot& snapshot) const;
+
   const session::SessionSetup& setup_;
-  std::optional<double> standing_since_;
+  std::optional<session::DemandFile> demand_;  ///< absent where none is given or it is gone
+  std::optional<double> standing_since_;       ///< or creeping
+  double crept_ = 0.0;                         ///< of this standstill
   std::optional<double> traffic_still_since_;
   bool company_ = false;  ///< a vehicle was near the ego at the last tick
   double stood_ = 0.0;
