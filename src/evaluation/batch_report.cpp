@@ -11,6 +11,7 @@
 #include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/contact_counts.h"
 #include "evaluation/heat_map.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/paper/paper_table.h"
@@ -85,15 +86,28 @@ Markup countsOf(const std::vector<BatchRun>& runs, const std::string& skipped) {
   return html;
 }
 
+/// Which system is the hardest and, right below it, how little the batch says about that.
+Markup answerOf(const Ranking& ranking, const SystemNames& names) {
+  const RankingText text = rankingText(ranking, names);
+  Markup answer = element("p", {}, text.sentences.front());
+  for (const std::string& warning : fewWarnings(ranking.systems))
+    answer += element("p", {{"class", "few"}}, warning);
+  for (std::size_t i = 1; i < text.sentences.size(); ++i)
+    answer += element("p", {}, text.sentences[i]);
+  Markup items;
+  for (const std::string& other : text.folded) items += element("li", {}, other) + "\n";
+  if (!items.empty())
+    answer += page::pageFold(countText(text.folded.size(), "other") + ", in this order",
+                             element("ol", {{"start", "2"}}, "\n" + items));
+  return element("div", {{"class", "answer"}}, answer);
+}
+
 /// The answer, then how the runs ended.
 Markup headerOf(const std::string& name, const std::vector<BatchRun>& runs, const Ranking& ranking,
                 const SystemNames& names, const std::string& skipped) {
   const Outcome worst = worstOf(runs);
-  Markup answer;
-  for (const std::string& sentence : rankingSentences(ranking, names))
-    answer += element("p", {}, sentence);
   return page::pageHeader(name, "evaluation of " + std::to_string(runs.size()) + " runs",
-                          element("div", {{"class", "answer"}}, answer) + "\n" +
+                          answerOf(ranking, names) + "\n" +
                               page::pageBanner(worst, headlineOf(worst), countsOf(runs, skipped)));
 }
 
@@ -135,17 +149,28 @@ std::string valueText(const BatchRun& run, const std::string& name, int decimals
   return found == run.record.measures.end() ? "–" : core::formatFixed(found->second, decimals);
 }
 
-/// The measures of each run that the page shows: heading and decimals.
+/// A measure of each run that the page shows.
 struct ShownMeasure {
   const metrics::MeasureDefinition* measure;
   const char* heading;
   int decimals;
 };
 
+/// A count of contacts of each run that the page shows.
+struct ShownCount {
+  double (*count)(const ContactCounts&);
+  const char* heading;
+};
+
+constexpr ShownCount kShownCounts[] = {
+    {[](const ContactCounts& counts) { return counts.all; }, "Contacts"},
+    {[](const ContactCounts& counts) { return counts.with_cbvs; }, "With CBVs"},
+    {[](const ContactCounts& counts) { return counts.withBackground(); }, "With background"},
+    {[](const ContactCounts& counts) { return counts.standing; }, "Ego standing"}};
+
 const std::vector<ShownMeasure>& shownMeasures() {
   namespace known = metrics::known;
   static const std::vector<ShownMeasure> measures = {
-      {&known::kCbvEgoCollisions, "Contacts", 0},
       {&known::kContactsAtFault, "At fault", 0},
       {&known::kDrivingScore, "Score", 1},
       {&known::kRouteCompletion, "Completion [%]", 1},
@@ -174,6 +199,9 @@ void addRow(const BatchRun& run, const SystemNames& names, page::HtmlTable& tabl
   std::vector<Markup> cells = {
       reportLink(run, record.factors.at("scenario")), names.of(record.factors),
       record.factors.at("seed") + (repetition == "1" ? "" : ", repetition " + repetition), status};
+  const ContactCounts counts = contactCountsOf(record);
+  for (const ShownCount& shown : kShownCounts)
+    cells.emplace_back(record.complete() ? core::formatFixed(shown.count(counts), 0) : "–");
   for (const ShownMeasure& shown : shownMeasures())
     cells.emplace_back(valueText(run, shown.measure->name, shown.decimals));
   std::vector<std::string> reasons = record.reasons;
@@ -200,6 +228,7 @@ Markup runTable(const std::vector<BatchRun>& runs, const SystemNames& names) {
     return rankOf(left->record) < rankOf(right->record);
   });
   std::vector<std::string> head = {"Scenario", "Planner", "Seed", "Outcome"};
+  for (const ShownCount& shown : kShownCounts) head.push_back("#" + std::string(shown.heading));
   for (const ShownMeasure& shown : shownMeasures())
     head.push_back("#" + std::string(shown.heading));
   head.emplace_back("Why");

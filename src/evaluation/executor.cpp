@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <set>
 
 #include "core/file.h"
 #include "core/output_folder.h"
@@ -45,6 +46,7 @@ class Executor {
       : plan_(plan), options_(options), stop_(stop) {}
 
   std::vector<RunRecord> execute() {
+    if (options_.resume) refuseRenamed();
     for (std::size_t i = 0; i < plan_.size(); ++i) enqueue(i);
     orderQueue();
     announceRuns();
@@ -55,6 +57,26 @@ class Executor {
   }
 
  private:
+  /// A run that an earlier version called otherwise would count twice.
+  void refuseRenamed() const {
+    std::map<Factors, std::string> ids;
+    std::set<std::string> planned_ids;
+    for (const PlannedRun& run : plan_) {
+      ids[run.factors] = run.id;
+      planned_ids.insert(run.id);
+    }
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(options_.results / "runs", none)) {
+      const auto record = readRecord(entry.path() / "record.json");
+      const auto planned = record ? ids.find(record->factors) : ids.end();
+      if (planned == ids.end() || planned_ids.count(record->id) != 0) continue;
+      throw core::InputError("'" + entry.path().string() + "' holds the run that is called '" +
+                             planned->second +
+                             "' by this version; begin the batch again (--overwrite), or give "
+                             "another --results");
+    }
+  }
+
   fs::path folderOf(std::size_t index) const {
     return runFolder(options_.results, plan_[index].id);
   }

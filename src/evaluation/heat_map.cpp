@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/text.h"
+#include "evaluation/contact_counts.h"
 #include "metrics/known_measures.h"
 #include "page/page_parts.h"
 
@@ -19,8 +20,8 @@ using core::Markup;
 struct HeatCell {
   std::size_t runs = 0;    ///< complete
   std::size_t others = 0;  ///< that are not
-  double contacts = 0.0;   ///< of CBVs with the ego
-  double at_fault = 0.0;   ///< contacts of the ego
+  ContactCounts contacts;  ///< of the ego
+  double at_fault = 0.0;   ///< of these, the ego's fault
   double score = 0.0;      ///< sum of driving scores
 };
 
@@ -37,14 +38,14 @@ void addToCell(const RunRecord& record, HeatCell& cell) {
     return;
   }
   ++cell.runs;
-  cell.contacts += measureOr0(record, metrics::known::kCbvEgoCollisions);
+  cell.contacts += contactCountsOf(record);
   cell.at_fault += measureOr0(record, metrics::known::kContactsAtFault);
   cell.score += measureOr0(record, metrics::known::kDrivingScore);
 }
 
-/// Shade by contacts per run: none, up to a half, one, two, more.
+/// Shade by contacts of the moving ego per run: none, up to a half, one, two, more.
 std::string shadeOf(const HeatCell& cell) {
-  const double per_run = cell.contacts / static_cast<double>(cell.runs);
+  const double per_run = cell.contacts.moving() / static_cast<double>(cell.runs);
   int shade = 0;
   for (const double limit : {0.0, 0.5, 1.0, 2.0}) shade += per_run > limit ? 1 : 0;
   return "h" + std::to_string(shade);
@@ -62,22 +63,23 @@ Markup cellHtml(const HeatCell& cell, const std::string& filter) {
   }
   const std::string score = core::formatFixed(cell.score / static_cast<double>(cell.runs), 0);
   const Markup link = element("a", {{"href", "#runs"}, {"data-filter", filter}},
-                              element("b", {}, core::formatFixed(cell.contacts, 0)) +
-                                  (cell.contacts == 1.0 ? " contact" : " contacts"));
+                              element("b", {}, core::formatFixed(cell.contacts.all, 0)) +
+                                  (cell.contacts.all == 1.0 ? " contact" : " contacts"));
+  const std::string kinds = kindsText(cell.contacts);
   const std::string under =
-      core::formatFixed(cell.at_fault, 0) + " at fault, score " + score + ", " +
-      countText(cell.runs, "run") +
+      (kinds.empty() ? "" : kinds + "; ") + core::formatFixed(cell.at_fault, 0) +
+      " at fault, score " + score + ", " + countText(cell.runs, "run") +
       (cell.others == 0 ? "" : ", " + std::to_string(cell.others) + " not complete");
   return element("td", {{"class", "heat " + shadeOf(cell)}}, link + element("small", {}, under));
 }
 
 double contactsIn(const HeatRow& row) {
   double sum = 0.0;
-  for (const auto& [factors, cell] : row) sum += cell.contacts;
+  for (const auto& [factors, cell] : row) sum += cell.contacts.moving();
   return sum;
 }
 
-/// Scenarios with their cells, most contacts first.
+/// Scenarios with their cells, most contacts of the moving ego first.
 std::vector<std::pair<std::string, HeatRow>> heatRows(const std::vector<RunRecord>& records) {
   std::map<std::string, HeatRow> by_scenario;
   for (const RunRecord& record : records)
@@ -111,9 +113,9 @@ Markup heatMap(const std::vector<RunRecord>& records, const Ranking& ranking,
               element("thead", {}, element("tr", {}, head)) + element("tbody", {}, rows));
   return element("div", {{"class", "scroll"}}, table) + "\n" +
          page::pageNote(
-             "Contacts of CBVs with the ego, the stronger the color the more per run; contacts at "
-             "the ego's "
-             "fault; mean driving score. A click on a cell shows its runs.");
+             "Contacts of the ego: with CBVs and with background traffic; the stronger the color, "
+             "the more per run while the ego moves. Below: those at its fault, mean driving "
+             "score. A click on a cell shows its runs.");
 }
 
 }  // namespace cdiff::evaluation

@@ -9,9 +9,10 @@
 
 namespace cdiff::evaluation {
 
-/// A table of scenarios (rows, most contacts first) against systems (columns, in the order of the
-/// ranking): contacts of CBVs with the ego, those of the ego at its fault, the mean driving score.
-/// The color is that of contacts per run. A cell links to its runs in the table below.
+/// A table of scenarios (rows, hardest first) against systems (columns, in the order of the
+/// ranking): contacts of the ego by partner, those at its fault, the mean driving score. Color and
+/// order go by contacts of the moving ego (per run), which the ranking goes by. A cell links to its
+/// runs in the table below.
 core::Markup heatMap(const std::vector<RunRecord>& records, const Ranking& ranking,
                      const SystemNames& names);
 

@@ -10,11 +10,12 @@
 
 namespace cdiff::evaluation {
 
-/// Which of a batch's systems is the hardest for the ego: the one whose CBVs touch it most often
-/// per km. The first is compared with each other one, and the p values are corrected for their
-/// number.
+/// Which of a batch's systems is the hardest for the ego: the one whose CBVs touch the moving ego
+/// most often per km; a contact with a standing one does not rank. The first is compared with each
+/// other one, and the p values are corrected for their number.
 struct Ranking {
-  std::vector<System> systems;         ///< most contacts per km first; those that drove no CBV last
+  std::vector<System> systems;  ///< most such contacts per km first; those without a CBV last
+  std::string measure;          ///< what ranks: records of earlier versions have all contacts alone
   std::vector<std::string> not_apart;  ///< names of systems that may be as hard as the first
   double largest_p = 0.0;              ///< of the others, p of the first against them, after Holm
 };
@@ -24,9 +25,16 @@ struct Ranking {
 Ranking rankingOf(const std::vector<System>& systems, const std::vector<RunRecord>& records,
                   const SystemNames& names);
 
-/// "Hardest for the ego: diffusion in attack. Its CBVs touched the ego 18 times in 0.94 km (19.2
-/// per km, 95 % [11.4, 30.3])." Then the others, of many the next two and the last, and whether the
-/// first is apart from them.
-std::vector<std::string> rankingSentences(const Ranking& ranking, const SystemNames& names);
+/// A ranking in words.
+struct RankingText {
+  std::vector<std::string> sentences;  ///< the answer first
+  std::vector<std::string> folded;     ///< the systems after the first, where they are many
+};
+
+/// "Hardest for the ego driven by pdm_lite: diffusion in attack. Its CBVs touched the moving ego 18
+/// times in 0.94 km (19.2 per km, 95 % exact Poisson [11.4, 30.3]), and 2 times with the ego
+/// standing." Then the others, whether the first is apart from them, and how contacts at the ego's
+/// fault and driving scores order them where that differs.
+RankingText rankingText(const Ranking& ranking, const SystemNames& names);
 
 }  // namespace cdiff::evaluation

@@ -250,17 +250,30 @@ class RunPlanner {
     }
   }
 
+  /// The scenario and the factors that vary, without those that say in every run the same as one
+  /// before them, as the guidance profile repeats the mode where nothing else sets it.
+  std::vector<std::string> namingFactors() const {
+    std::vector<std::string> naming;
+    for (const std::string& factor : factorNames()) {
+      std::set<std::string> levels;
+      for (const PlannedRun& run : runs_) levels.insert(run.factors.at(factor));
+      const bool repeats = std::any_of(naming.begin(), naming.end(), [&](const std::string& other) {
+        return std::all_of(runs_.begin(), runs_.end(), [&](const PlannedRun& run) {
+          return run.factors.at(factor) == run.factors.at(other);
+        });
+      });
+      if (factor == "scenario" || (levels.size() > 1 && !repeats)) naming.push_back(factor);
+    }
+    return naming;
+  }
+
   /// The scenario first, then the levels of the factors that vary.
   void nameRuns() {
-    std::map<std::string, std::set<std::string>> levels;
-    for (const PlannedRun& run : runs_) {
-      for (const auto& [factor, level] : run.factors) levels[factor].insert(level);
-    }
+    const std::vector<std::string> naming = namingFactors();
     std::set<std::string> taken;
     for (PlannedRun& run : runs_) {
-      std::vector<std::string> parts = {run.factors.at("scenario")};
-      for (const std::string& factor : factorNames()) {
-        if (factor == "scenario" || levels[factor].size() < 2) continue;
+      std::vector<std::string> parts;
+      for (const std::string& factor : naming) {
         const std::string& level = run.factors.at(factor);
         const bool number = factor == "seed" || factor == "repetition";
         parts.push_back(number ? factor + level : fs::path(level).stem().string());

@@ -238,6 +238,11 @@ void addNumbers(const json& object, const std::string& place, SummaryNumbers& nu
 
 }  // namespace
 
+std::string RunContact::partnerText() const {
+  if (!with_cbv) return partner;
+  return (*with_cbv ? "CBV " : "background vehicle ") + partner;
+}
+
 std::vector<RunContact> contactsIn(const std::string& text, const std::string& source) {
   std::vector<RunContact> contacts;
   try {
@@ -245,6 +250,7 @@ std::vector<RunContact> contactsIn(const std::string& text, const std::string& s
     for (const json& entry : summary.value(json::json_pointer("/ego/contacts"), json::array())) {
       contacts.push_back({entry.at("seconds"), entry.at("with"), entry.at("ego_at_fault"),
                           entry.at("why"), entry.at("ego_speed_mps"), entry.at("other_speed_mps")});
+      if (entry.contains("with_cbv")) contacts.back().with_cbv = entry.at("with_cbv").get<bool>();
     }
   } catch (const json::exception& error) {
     throw core::InputError("'" + source + "' is no summary of a session: " + error.what());

@@ -84,9 +84,13 @@ struct RunContact {
   double seconds = 0.0;  ///< time in the session [s]
   std::string partner;   ///< id of the other vehicle
   bool ego_at_fault = false;
-  std::string why;           ///< who struck whom, in a short sentence
-  double ego_speed = 0.0;    ///< [m/s]
-  double other_speed = 0.0;  ///< [m/s]
+  std::string why;                 ///< who struck whom, in a short sentence
+  double ego_speed = 0.0;          ///< [m/s]
+  double other_speed = 0.0;        ///< [m/s]
+  std::optional<bool> with_cbv{};  ///< else with background traffic; absent: not recorded
+
+  /// "CBV bg_1", "background vehicle bg_7".
+  std::string partnerText() const;
 };
 
 /// In order of time; empty for a summary of a version without them. Throws InputError naming

@@ -102,28 +102,17 @@ std::size_t countIntervals(const std::vector<System>& systems) {
   return count;
 }
 
-/// How to read the table, then a warning where a system has few seeds or routes; one without a
-/// complete run has none, its row says so.
-std::vector<std::string> remarks(const std::vector<System>& systems) {
+/// How to read the table.
+std::string readingText(const std::vector<System>& systems) {
   const std::size_t intervals = countIntervals(systems);
   const std::string compare =
       " `cdiff report --compare` tests differences and corrects for their number.";
-  std::vector<std::string> texts = {
-      intervals == 0
-          ? "Figures over all routes; counts are events / km = rate." + compare
-          : "Figures over all routes with 95 % intervals: bootstrap clustered on routes; counts "
-            "are events / km = rate with exact Poisson intervals. The table holds " +
-                countText(intervals, "interval") + ": about " +
-                core::formatFixed(0.05 * static_cast<double>(intervals), 1) +
-                " of them are expected to miss." + compare};
-  std::set<std::string> warnings;
-  for (const System& system : systems) {
-    if (system.routes == 0) continue;
-    const std::string warning = fewWarning(system.seeds, system.routes, true);
-    if (!warning.empty()) warnings.insert("Warning: " + warning);
-  }
-  texts.insert(texts.end(), warnings.begin(), warnings.end());
-  return texts;
+  if (intervals == 0) return "Figures over all routes; counts are events / km = rate." + compare;
+  return "Figures over all routes with 95 % intervals: bootstrap clustered on routes; counts are "
+         "events / km = rate with exact Poisson intervals. The table holds " +
+         countText(intervals, "interval") + ": about " +
+         core::formatFixed(0.05 * static_cast<double>(intervals), 1) +
+         " of them are expected to miss." + compare;
 }
 
 /// Whether a row shows no intervals.
@@ -161,9 +150,19 @@ Json systemsJson(const std::vector<System>& systems) {
   return list;
 }
 
+std::vector<std::string> fewWarnings(const std::vector<System>& systems) {
+  std::set<std::string> warnings;
+  for (const System& system : systems) {
+    if (system.routes == 0) continue;
+    const std::string warning = fewWarning(system.seeds, system.routes, true);
+    if (!warning.empty()) warnings.insert("Warning: " + warning);
+  }
+  return {warnings.begin(), warnings.end()};
+}
+
 std::string systemsMarkdown(const std::vector<System>& systems) {
-  std::string text = "## Systems\n";
-  for (const std::string& remark : remarks(systems)) text += "\n" + remark + "\n";
+  std::string text = "## Systems\n\n" + readingText(systems) + "\n";
+  for (const std::string& warning : fewWarnings(systems)) text += "\n" + warning + "\n";
   std::vector<std::string> head = headCells();
   for (std::string& name : head) name.erase(0, name.find_first_not_of('#'));
   text += "\n" + markdownRow(head) + markdownRow(std::vector<std::string>(head.size(), "---"));
@@ -216,9 +215,10 @@ Markup measureTable(const std::vector<System>& systems, const SystemNames& names
 
 Markup systemsHtml(const std::vector<System>& systems) {
   const SystemNames names(systems);
-  Markup html = measureTable(systems, names, headlineMeasures());
-  Markup rest;
-  for (const std::string& remark : remarks(systems)) rest += page::pageNote(remark);
+  std::vector<std::string> first = {metrics::known::kCbvMovingEgoCollisions.name};
+  first.insert(first.end(), headlineMeasures().begin(), headlineMeasures().end());
+  const Markup html = measureTable(systems, names, first);
+  Markup rest = page::pageNote(readingText(systems));
   rest += measureTable(systems, names, shownMeasures());
   if (anyWithout(systems)) rest += page::pageNote(intervalRule());
   return html + page::pageFold("More measures, and how to read them", rest);

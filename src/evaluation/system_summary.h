@@ -17,10 +17,14 @@ namespace cdiff::evaluation {
 /// A list with an object per system: factors, runs, routes, seeds and all measures.
 nlohmann::ordered_json systemsJson(const std::vector<System>& systems);
 
+/// A warning for each small number of seeds and routes that a system has; one without a complete
+/// run has none.
+std::vector<std::string> fewWarnings(const std::vector<System>& systems);
+
 /// The main measures: warnings, a table with a row per system, and a line on multiplicity.
 std::string systemsMarkdown(const std::vector<System>& systems);
 
-/// The same for the page.
+/// The same for the page, without the warnings, which stand in its head.
 core::Markup systemsHtml(const std::vector<System>& systems);
 
 }  // namespace cdiff::evaluation

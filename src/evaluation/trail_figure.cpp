@@ -9,12 +9,12 @@
 
 #include "core/csv.h"
 #include "core/text.h"
+#include "evaluation/contact_counts.h"
 #include "evaluation/paper/frame_figure.h"
 #include "evaluation/trail_scene.h"
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "planners/registry.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -140,28 +140,37 @@ std::string courseOf(const BatchRun& run) {
          " % off the road";
 }
 
-/// "2 contacts (1 with the ego), nearest 4.1 m" or "no contact, nearest 4.1 m", of CBVs.
-std::string countsOf(const BatchRun& run) {
-  namespace known = metrics::known;
-  const auto nearest = run.number(known::kCbvMinimumDistance.place);
-  if (!nearest) return "no CBV was driven";
-  const double contacts = run.number(known::kCbvCollisions.place).value_or(0.0);
-  const double with_ego = run.number(known::kCbvEgoCollisions.place).value_or(0.0);
-  const std::string distance = ", nearest " + core::formatFixed(*nearest, 1) + " m";
-  if (contacts == 0.0) return "no contact" + distance;
-  return core::formatFixed(contacts, 0) + (contacts == 1.0 ? " contact" : " contacts") + " (" +
-         core::formatFixed(with_ego, 0) + " with the ego)" + distance;
+std::string contactsText(double count) {
+  return core::formatFixed(count, 0) + (count == 1.0 ? " contact" : " contacts");
 }
 
-std::string titleOf(const std::string& planner) {
-  const planning::PlannerDescriptor* known = planners::findPlanner(planner);
-  return known == nullptr ? planner : known->title;
+/// "3 contacts of the ego (2 with CBVs + 1 with background), 1 contact of CBVs with others" or "no
+/// contact": the circles of the picture.
+std::string touchesText(const BatchRun& run) {
+  namespace known = metrics::known;
+  ContactCounts ego;
+  ego.with_cbvs = run.number(known::kCbvEgoCollisions.place).value_or(0.0);
+  ego.all = std::max(ego.with_cbvs, run.number(known::kEgoCollisions.place).value_or(0.0));
+  const double others =
+      run.number(known::kCbvCollisions.place).value_or(ego.with_cbvs) - ego.with_cbvs;
+  std::vector<std::string> parts;
+  if (ego.all > 0.0)
+    parts.push_back(contactsText(ego.all) + " of the ego (" + kindsText(ego) + ")");
+  if (others > 0.0) parts.push_back(contactsText(others) + " of CBVs with others");
+  return parts.empty() ? "no contact" : core::joinText(parts, ", ");
+}
+
+/// The contacts, then "nearest CBV 4.1 m" or "no CBV was driven".
+std::string countsOf(const BatchRun& run) {
+  const auto nearest = run.number(metrics::known::kCbvMinimumDistance.place);
+  return touchesText(run) + (nearest ? ", nearest CBV " + core::formatFixed(*nearest, 1) + " m"
+                                     : ", no CBV was driven");
 }
 
 page::Panel scenePanel(const DrivenScene& scene, const SceneView& view,
                        const session::SessionSetup* setup, TrailsOf who) {
   page::Panel panel;
-  panel.title = titleOf(scene.planner);
+  panel.title = scene.planner;
   const double height = view.canvas.height();
   panel.width = kSceneWidth;
   panel.height = height + kTextHeight;
@@ -215,11 +224,11 @@ void addNotes(const std::vector<BatchRun>& runs, const DrivenScene& first, const
                         "ego and CBVs. Below each picture " +
                         (who == TrailsOf::kEgo
                              ? "what became of the ego; off the road is its center."
-                             : "contacts of CBVs, and the smallest distance of their centers to "
-                               "that of the ego."));
+                             : "these contacts, and the smallest distance between centers of a "
+                               "CBV and the ego."));
   for (const BatchRun& run : runs) {
     if (run.record.complete() || sceneOf(run, who) != scene) continue;
-    sheet.notes.push_back(titleOf(run.record.factors.at(factorOf(who))) + ": " + run.record.status +
+    sheet.notes.push_back(run.record.factors.at(factorOf(who)) + ": " + run.record.status +
                           (run.record.cause.empty() ? "" : ", " + run.record.cause));
   }
 }

@@ -19,9 +19,9 @@ struct RankedMoment {
 
 RankedMoment contactMoment(std::size_t run, const RunContact& contact) {
   const std::string fault = contact.ego_at_fault ? " (the ego's fault): " : " (not its fault): ";
-  return {
-      {run, contact.seconds, "contact of the ego with " + contact.partner + fault + contact.why},
-      {false, !contact.ego_at_fault, -std::max(contact.ego_speed, contact.other_speed)}};
+  return {{run, contact.seconds,
+           "contact of the ego with " + contact.partnerText() + fault + contact.why},
+          {false, !contact.ego_at_fault, -std::max(contact.ego_speed, contact.other_speed)}};
 }
 
 std::optional<RankedMoment> approachMoment(std::size_t index, const RunRecord& record) {

@@ -29,6 +29,18 @@ const MeasureDefinition known::kCbvEgoCollisions = {
     "",
     0,
 };
+const MeasureDefinition known::kCbvMovingEgoCollisions = {
+    "cbv_moving_ego_collisions",
+    "/cbv/collisions_with_moving_ego",
+    "Collisions of CBVs with the moving ego",
+    "count",
+    Direction::kNeither,
+    Subject::kEgoAndOthers,
+    "Those collisions of CBVs with the ego at whose first tick the ego is not slower than the "
+    "protocol's collision_minimum_speed (0.1 m/s).",
+    "",
+    0,
+};
 const MeasureDefinition known::kCollisionsPerKm = {
     "cbv_collisions_per_km",
     "/cbv/collisions_per_km",
@@ -58,17 +70,23 @@ namespace {
 /// Contacts of CBVs with anyone and with the ego alone; a contact of two CBVs counts once.
 class CbvCollisions final : public Metric {
  public:
+  explicit CbvCollisions(double standing_speed) : standing_speed_(standing_speed) {}
+
   void observe(const MetricTick& tick) override {
+    const bool moving = tick.ego != nullptr && tick.ego->state.speed >= standing_speed_;
     for (const ContactSighting& contact : tick.contacts) {
       if (contact.cbvs.empty()) continue;
       ++collisions_;
-      if (!contact.ego_partner.empty()) ++ego_collisions_;
+      if (contact.ego_partner.empty()) continue;
+      ++ego_collisions_;
+      if (moving) ++moving_ego_collisions_;
     }
     travel_.observe(tick);
   }
   void report(MetricSink& sink) const override {
     sink.set(known::kCbvCollisions, countMeasure(collisions_));
     sink.set(known::kCbvEgoCollisions, countMeasure(ego_collisions_));
+    sink.set(known::kCbvMovingEgoCollisions, countMeasure(moving_ego_collisions_));
     sink.set(known::kCollisionsPerKm,
              collisionsPerKilometer(collisions_, travel_.distance(), travel_.vehicles()));
     sink.set(known::kCbvEgoCollisionsPerKm,
@@ -76,19 +94,24 @@ class CbvCollisions final : public Metric {
   }
 
  private:
+  double standing_speed_;  ///< [m/s]
   CbvTravel travel_;
   std::size_t collisions_ = 0;
   std::size_t ego_collisions_ = 0;
+  std::size_t moving_ego_collisions_ = 0;
 };
 
 }  // namespace
 
 MetricDescriptor cbvCollisionsMetric() {
-  return {"cbv_collisions",
-          "Collisions of CBVs, as counts and per kilometer.",
-          {known::kCbvCollisions, known::kCbvEgoCollisions, known::kCollisionsPerKm,
-           known::kCbvEgoCollisionsPerKm},
-          [](const MetricContext&) { return std::make_unique<CbvCollisions>(); }};
+  return {
+      "cbv_collisions",
+      "Collisions of CBVs, as counts and per kilometer.",
+      {known::kCbvCollisions, known::kCbvEgoCollisions, known::kCbvMovingEgoCollisions,
+       known::kCollisionsPerKm, known::kCbvEgoCollisionsPerKm},
+      [](const MetricContext& context) {
+        return std::make_unique<CbvCollisions>(context.options.infractions.collision_minimum_speed);
+      }};
 }
 
 namespace {

@@ -104,7 +104,7 @@ MetricDescriptor cbvDistanceMetric() {
 const MeasureDefinition known::kCbvClosestDistance = {
     "cbv_closest_distance_m",
     "/cbv/closest_distance_m",
-    "Smallest distance of each CBV to the ego between centers, mean",
+    "Closest approach to the ego, mean over CBVs, between centers",
     "m",
     Direction::kNeither,
     Subject::kEgoAndOthers,
@@ -114,7 +114,7 @@ const MeasureDefinition known::kCbvClosestDistance = {
 const MeasureDefinition known::kCbvMinimumDistance = {
     "cbv_minimum_distance_m",
     "/cbv/minimum_distance_m",
-    "Smallest distance of any CBV to the ego between centers",
+    "Closest approach of any CBV to the ego, between centers",
     "m",
     Direction::kNeither,
     Subject::kEgoAndOthers,

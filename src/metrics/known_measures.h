@@ -19,6 +19,7 @@ extern const MeasureDefinition kCbvDistance;
 extern const MeasureDefinition kCbvEgoCollisions;
 extern const MeasureDefinition kCbvEgoCollisionsPerKm;
 extern const MeasureDefinition kCbvMinimumDistance;
+extern const MeasureDefinition kCbvMovingEgoCollisions;
 extern const MeasureDefinition kCbvOffRoad;
 extern const MeasureDefinition kCbvSpeedError;
 extern const MeasureDefinition kCollisionsPerKm;

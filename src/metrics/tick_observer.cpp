@@ -120,8 +120,10 @@ void TickObserver::addContacts(MetricTick& tick) {
   tick.ego_contacts.assign(ego_contacts_.contacts().begin() + known,
                            ego_contacts_.contacts().end());
   avoidance_.observe(tick.snapshot, tick.ego_arc_length);
-  for (EgoContact& contact : tick.ego_contacts)
+  for (EgoContact& contact : tick.ego_contacts) {
     contact.braking_avoids = avoidance_.avoids(contact.partner);
+    contact.with_cbv = isCbv(tick.snapshot, contact.partner);
+  }
 }
 
 void TickObserver::addCbvs(MetricTick& tick) {

@@ -49,6 +49,16 @@ std::string metText(const record::SessionResult& result) {
               : "' and met every rule of the scenario that applies");
 }
 
+/// All contacts of the ego, folded, where the reasons name some of them alone.
+Markup foldedContacts(const std::vector<metrics::EgoContact>& contacts) {
+  if (contacts.size() <= record::kShownContacts) return {};
+  Markup items;
+  for (const metrics::EgoContact& contact : contacts)
+    items += element("li", {}, linkedTimes(record::contactText(contact))) + "\n";
+  return pageFold("All " + std::to_string(contacts.size()) + " contacts of the ego",
+                  element("ol", {}, "\n" + items));
+}
+
 Markup banner(const record::SessionResult& result) {
   const session::ScenarioOptions& options = result.setup.options();
   const record::Outcome outcome = result.verdict.outcome;
@@ -61,7 +71,8 @@ Markup banner(const record::SessionResult& result) {
       headlineOf(outcome) + std::string(untested ? " \u00b7 0 CBVs: nothing was tested" : "");
   std::string story;
   for (const std::string& sentence : record::sessionStory(result)) story += sentence + " ";
-  content += element("p", {{"class", "story"}}, linkedTimes(story));
+  content += element("p", {{"class", "story"}}, linkedTimes(story)) +
+             foldedContacts(result.measures.ego_contacts);
   return pageHeader(options.name,
                     options.mode + " · seed " + std::to_string(options.seed) + " · ego " +
                         options.ego_planner + " · CBV " + options.cbv_planner + " · method " +
@@ -117,17 +128,19 @@ std::string paceText(const record::SessionResult& result) {
 Markup egoTiles(const record::SessionResult& result) {
   namespace known = metrics::known;
   const metrics::SessionMeasures& measures = result.measures;
+  const std::size_t with_cbvs = measures.count(known::kCbvEgoCollisions);
+  const std::size_t all = std::max(with_cbvs, measures.count(known::kEgoCollisions));
   return tile(known::kRouteCompletion.label,
               core::formatFixed(measures.number(known::kRouteCompletion), 1), "%",
               traffic::toText(result.status)) +
          tile(known::kDrivingScore.label,
               core::formatFixed(measures.number(known::kDrivingScore), 1), "",
               "of 100, by " + measures.protocol) +
-         tile(known::kEgoCollisions.label, std::to_string(measures.count(known::kEgoCollisions)),
-              "",
-              std::to_string(measures.count(known::kContactsAtFault)) + " its fault, " +
-                  std::to_string(measures.count(known::kCbvEgoCollisions)) + " with CBVs, " +
-                  std::to_string(measures.count(known::kEgoBrakingAvoids)) + " avoided by braking");
+         tile(known::kEgoCollisions.label, std::to_string(all), "",
+              std::to_string(with_cbvs) + " with CBVs + " + std::to_string(all - with_cbvs) +
+                  " with background, " + std::to_string(measures.count(known::kContactsAtFault)) +
+                  " its fault, " + std::to_string(measures.count(known::kEgoBrakingAvoids)) +
+                  " avoided by braking");
 }
 
 Markup cbvTiles(const metrics::SessionMeasures& measures) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -254,13 +255,36 @@ const record::LoggedPlan* planAt(const record::VehiclePlans* vehicle, double tim
   return &*std::prev(later);
 }
 
-/// The frame that the page shows first: the closest approach, else the last.
-std::size_t firstShown(const Json& times, const record::Timeline& timeline) {
-  const auto& gap = timeline.smallestGap();
+/// The time that the page shows first: the contact that the verdict turned on, else the closest
+/// approach; nullopt without either.
+std::optional<double> firstTime(const record::SessionResult& result) {
+  const metrics::EgoContact* contact =
+      record::decidingContact(result.setup.options(), result.verdict, result.measures.ego_contacts);
+  if (contact != nullptr) return contact->seconds;
+  const auto& gap = result.timeline.smallestGap();
+  return gap ? std::optional<double>(gap->time) : std::nullopt;
+}
+
+/// Its frame; the last one without such a time.
+std::size_t firstShown(const Json& times, const record::SessionResult& result) {
+  const std::optional<double> time = firstTime(result);
   std::size_t shown = times.empty() ? 0 : times.size() - 1;
-  if (!gap) return shown;
-  while (shown > 0 && times[shown].get<double>() > gap->time + kFrameRounding) --shown;
+  if (!time) return shown;
+  while (shown > 0 && times[shown].get<double>() > *time + kFrameRounding) --shown;
   return shown;
+}
+
+/// Index of the vehicle that the ego touches at a frame; -1 where it touches none.
+std::int64_t touchedAt(double time, const record::SessionResult& result) {
+  const auto& vehicles = result.timeline.vehicles();
+  for (const metrics::EgoContact& contact : result.measures.ego_contacts) {
+    if (std::abs(contact.seconds - time) > kFrameRounding) continue;
+    const auto found = std::find_if(
+        vehicles.begin(), vehicles.end(),
+        [&](const record::TimelineVehicle& vehicle) { return vehicle.id == contact.partner; });
+    if (found != vehicles.end()) return found - vehicles.begin();
+  }
+  return -1;
 }
 
 /// Index of the style that each vehicle has as CBV.
@@ -332,6 +356,7 @@ void addFrames(Json& data, const record::SessionResult& result, const MapCanvas&
     data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
     data["moments"].push_back(momentNumbers(frames[i]));
     data["plans"].push_back(planTexts(frames[i], result, canvas));
+    data["touched"].push_back(touchedAt(frames[i].time, result));
     if (gazes) data["gazes"].push_back(attentionNumbers(frames[i]));
     if (perception) data["perceived"].push_back(perceivedTexts(frames[i], canvas));
   }
@@ -346,11 +371,12 @@ std::string playbackJson(const record::SessionResult& result, const MapCanvas& c
                {"frames", Json::array()},
                {"moments", Json::array()},
                {"plans", Json::array()},
+               {"touched", Json::array()},
                {"period", result.front_views.period()},
                {"views", viewLists(result)}};
   addVehicles(data, result);
   addFrames(data, result, canvas);
-  data["start"] = firstShown(data["times"], result.timeline);
+  data["start"] = firstShown(data["times"], result);
   return data.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -92,7 +92,8 @@ std::string contact(const SessionResult& result) {
   const std::vector<metrics::EgoContact>& contacts = result.measures.ego_contacts;
   if (contacts.empty()) return "No vehicle touched the ego.";
   const metrics::EgoContact& first = contacts.front();
-  return first.partner + " and the ego touched at " + core::formatFixed(first.seconds, 2) + " s" +
+  return "The ego and " + partnerText(first) + " touched at " +
+         core::formatFixed(first.seconds, 2) + " s" +
          (contacts.size() > 1
               ? ", the first of " + std::to_string(contacts.size()) + " contacts of the ego"
               : "") +

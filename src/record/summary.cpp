@@ -22,6 +22,7 @@ Json contactList(const std::vector<metrics::EgoContact>& contacts) {
     list.push_back({{"tick", contact.tick},
                     {"seconds", contact.seconds},
                     {"with", contact.partner},
+                    {"with_cbv", contact.with_cbv},
                     {"ego_at_fault", contact.ego_at_fault},
                     {"why", contact.reason},
                     {"ego_speed_mps", contact.ego_speed},

@@ -18,6 +18,8 @@ namespace known = metrics::known;
 using traffic::SessionStatus;
 
 constexpr double kNoLimit = 1e9;  // default of the rules on counts
+constexpr const char* kContactsAtFaultRule = "contacts_at_fault";
+constexpr const char* kContactWithoutFaultRule = "contact_without_fault";
 
 Check judged(const std::string& name, bool met, const std::string& text) {
   return {name, met ? CheckOutcome::kPassed : CheckOutcome::kFailed, text};
@@ -56,19 +58,29 @@ struct BlamedContacts {
   }
 };
 
+/// "with A; with B; with C; and 20 more": the first contacts after a preposition.
+std::string firstTexts(const std::vector<std::string>& contacts, const std::string& preposition) {
+  const std::size_t shown = std::min(contacts.size(), kShownContacts);
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < shown; ++i) parts.push_back(preposition + " " + contacts[i]);
+  if (contacts.size() > shown)
+    parts.push_back("and " + std::to_string(contacts.size() - shown) + " more");
+  return core::joinText(parts, "; ");
+}
+
 std::string atFaultText(const std::vector<std::string>& contacts) {
-  return "the ego was at fault in " + countText(contacts.size(), "contact") + ": with " +
-         core::joinText(contacts, "; with ");
+  return "the ego was at fault in " + countText(contacts.size(), "contact") + ": " +
+         firstTexts(contacts, "with");
 }
 
 std::string struckText(const std::vector<std::string>& contacts) {
-  return "the ego was struck without fault in " + countText(contacts.size(), "contact") + ", by " +
-         core::joinText(contacts, "; by ");
+  return "the ego was struck without fault in " + countText(contacts.size(), "contact") + ", " +
+         firstTexts(contacts, "by");
 }
 
 std::string excusedText(const std::vector<std::string>& contacts) {
   return "no braking of the ego would have avoided " + countText(contacts.size(), "contact") +
-         ", which excuses it: with " + core::joinText(contacts, "; with ");
+         ", which excuses it: " + firstTexts(contacts, "with");
 }
 
 /// Of contacts that are not, or not wholly, the ego's fault.
@@ -130,11 +142,10 @@ class VerdictRules {
     const std::vector<std::string>& own = contacts.fault;
     const double most = rules_.maximum_contacts_at_fault;
     if (most < kNoLimit) {
-      checks_.push_back(
-          judged("contacts_at_fault", static_cast<double>(own.size()) <= most,
-                 "the ego was at fault in " + countText(own.size(), "contact") + "; at most " +
-                     core::formatNumber(most) + " allowed" +
-                     (own.empty() ? "" : ": with " + core::joinText(own, "; with "))));
+      checks_.push_back(judged(kContactsAtFaultRule, static_cast<double>(own.size()) <= most,
+                               "the ego was at fault in " + countText(own.size(), "contact") +
+                                   "; at most " + core::formatNumber(most) + " allowed" +
+                                   (own.empty() ? "" : ": " + firstTexts(own, "with"))));
     }
     addContactsWithoutFault(faultlessTexts(contacts));
   }
@@ -144,7 +155,7 @@ class VerdictRules {
     if (meaning == "allowed") return;
     const bool by_mode = meaning == "by_mode";
     if (by_mode) meaning = mode_ != "naturalistic" ? "struck" : "failed";
-    Check check{"contact_without_fault", CheckOutcome::kPassed, "no vehicle struck the ego"};
+    Check check{kContactWithoutFaultRule, CheckOutcome::kPassed, "no vehicle struck the ego"};
     if (!texts.empty()) {
       check.outcome = meaning == "struck" ? CheckOutcome::kStruck : CheckOutcome::kFailed;
       check.text = core::joinText(texts, "; ") +
@@ -304,9 +315,30 @@ std::string faultText(const session::ScenarioOptions& options,
                              " that no braking would have avoided");
 }
 
+std::string partnerText(const metrics::EgoContact& contact) {
+  return (contact.with_cbv ? "CBV " : "background vehicle ") + contact.partner;
+}
+
 std::string contactText(const metrics::EgoContact& contact) {
-  return contact.partner + " at " + core::formatFixed(contact.seconds, 2) + " s (" +
+  return partnerText(contact) + " at " + core::formatFixed(contact.seconds, 2) + " s (" +
          contact.reason + ")";
+}
+
+const metrics::EgoContact* decidingContact(const session::ScenarioOptions& options,
+                                           const Verdict& verdict,
+                                           const std::vector<metrics::EgoContact>& contacts) {
+  if (contacts.empty()) return nullptr;
+  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
+  const auto decided = [&](const char* rule) {
+    const auto& rules = verdict.decided_by;
+    return std::find(rules.begin(), rules.end(), rule) != rules.end();
+  };
+  const bool by_others = !decided(kContactsAtFaultRule) && decided(kContactWithoutFaultRule);
+  const auto found =
+      std::find_if(contacts.begin(), contacts.end(), [&](const metrics::EgoContact& contact) {
+        return (blameOf(contact, excuses) == Blame::kFault) != by_others;
+      });
+  return found == contacts.end() ? &contacts.front() : &*found;
 }
 
 }  // namespace cdiff::record

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,19 @@ Blame blameOf(const metrics::EgoContact& contact, bool excuses_unavoidable);
 std::string faultText(const session::ScenarioOptions& options,
                       const std::vector<metrics::EgoContact>& contacts);
 
-/// "cbv_1 at 5.85 s (the other's front struck the ego's rear ...)".
+/// A reason names this many contacts of a kind, then counts the rest.
+inline constexpr std::size_t kShownContacts = 3;
+
+/// "CBV bg_1", "background vehicle bg_7": the other vehicle of a contact, for people.
+std::string partnerText(const metrics::EgoContact& contact);
+
+/// "CBV bg_1 at 5.85 s (the other's front struck the ego's rear ...)".
 std::string contactText(const metrics::EgoContact& contact);
+
+/// The contact that the verdict turned on: the first of the kind that decided it; where none did,
+/// the first at fault, else the first. nullptr without contacts.
+const metrics::EgoContact* decidingContact(const session::ScenarioOptions& options,
+                                           const Verdict& verdict,
+                                           const std::vector<metrics::EgoContact>& contacts);
 
 }  // namespace cdiff::record

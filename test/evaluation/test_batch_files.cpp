@@ -101,7 +101,7 @@ TEST_F(BatchFiles, SummaryHasASystemPerCombinationWithoutRoutes) {
   expectIn("| 4 / 2.000 km = 2.00 |", text);
   expectIn(
       "Warning: only 1 seed; a figure needs at least 5 (`--seeds 1,2,3,4,5`). Only 2 routes: "
-      "too few for intervals, which need 5.",
+      "too few for bootstrap intervals, which need 5.",
       text);
 }
 

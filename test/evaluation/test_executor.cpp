@@ -145,6 +145,17 @@ TEST_F(ExecutorTest, TakesAwayWhatAKilledBatchLeftBesideAResult) {
   EXPECT_FALSE(core::OutputFolder::lists(runFolder(options_.results, "good0"), "record.json.part"));
 }
 
+TEST_F(ExecutorTest, RefusesToResumeARunThatHadAnotherName) {
+  std::vector<PlannedRun> runs = plan({"good"});
+  execute(runs);
+  runs[0].id = "renamed";
+  options_.resume = true;
+  EXPECT_THROW(execute(runs), core::InputError);
+  EXPECT_EQ(readRecords(options_.results).size(), 1U);
+  runs[0].factors["scenario"] = "y";  // another run
+  EXPECT_EQ(execute(runs)[0].status, "completed");
+}
+
 TEST_F(ExecutorTest, AStaleRecordThatIsNotChosenStays) {
   std::vector<PlannedRun> runs = plan({"good"});
   execute(runs);

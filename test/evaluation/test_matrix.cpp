@@ -145,6 +145,20 @@ TEST(Plan, RefusesAPlannerInARoleThatItDoesNotHave) {
   EXPECT_GT(refused, 0U);
 }
 
+// The guidance profile follows the mode, and has its name.
+TEST(Plan, NamesNothingTwice) {
+  MatrixOptions matrix = oneScenario();
+  matrix.modes = {"naturalistic", "safety_critical"};
+  const auto plan = planRuns(matrix, "matrix.yaml");
+  ASSERT_EQ(plan.size(), 2U);
+  EXPECT_EQ(plan[0].factors.at("guidance_profile"), "naturalistic");
+  EXPECT_EQ(plan[0].id, "arterial_exit__naturalistic");
+  EXPECT_EQ(plan[1].id, "arterial_exit__safety_critical");
+  matrix.guidance_profiles = {"naturalistic", "none"};
+  EXPECT_EQ(planRuns(matrix, "matrix.yaml")[0].id, "arterial_exit__naturalistic__naturalistic")
+      << "the profile tells runs apart";
+}
+
 TEST(Plan, IsTheProductOfItsFactors) {
   MatrixOptions matrix = oneScenario();
   matrix.seeds = {"1", "2"};

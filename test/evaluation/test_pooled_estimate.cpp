@@ -186,8 +186,9 @@ TEST(Pooling, EveryMeasureLiesWithinItsBounds) {
 TEST(FewWarning, NamesSeedsAndRoutes) {
   EXPECT_EQ(fewWarning(5, 10, true), "");
   EXPECT_NE(fewWarning(3, 10, true).find("only 3 seeds"), std::string::npos);
-  EXPECT_NE(fewWarning(5, 4, true).find("Only 4 routes: too few for intervals, which need 5."),
-            std::string::npos);
+  EXPECT_NE(
+      fewWarning(5, 4, true).find("Only 4 routes: too few for bootstrap intervals, which need 5."),
+      std::string::npos);
   EXPECT_NE(fewWarning(5, 5, true).find("Only 5 routes: intervals by the bootstrap"),
             std::string::npos);
 }

@@ -58,6 +58,7 @@ class TrailFigure : public testing::Test {
     core::writeFileAtomically(run.folder / "summary.json", distance ? kTouching : kAlone);
     if (distance) {
       run.numbers = {{"/cbv/minimum_distance_m", *distance},
+                     {"/ego/collisions", 3.0},
                      {"/cbv/collisions", 2.0},
                      {"/cbv/collisions_with_ego", 1.0}};
     }
@@ -128,10 +129,14 @@ TEST_F(TrailFigure, TrailsDarkenAndContactsAreMarkedWhereTheyWere) {
   EXPECT_TRUE(has(text, "contact of bg_1 and bg_2 at 0.75 s")) << text;
   EXPECT_TRUE(has(text, "cx=\"379.2\" cy=\"140\"")) << text;
   EXPECT_FALSE(has(text, "bg_4"));  // its contact is the ego's
-  EXPECT_TRUE(has(text, ">PDM-Lite</text>")) << text;
-  EXPECT_TRUE(has(text, ">2 contacts (1 with the ego), nearest 4.4 m</text>")) << text;
-  EXPECT_TRUE(has(text, ">PPO</text>")) << text;
-  EXPECT_TRUE(has(text, ">no CBV was driven</text>")) << text;
+  EXPECT_TRUE(has(text, ">pdm_lite</text>")) << text;
+  EXPECT_TRUE(
+      has(text,
+          ">3 contacts of the ego (1 with CBVs + 2 with background), 1 contact of CBVs with "
+          "others, nearest CBV 4.4 m</text>"))
+      << text;
+  EXPECT_TRUE(has(text, ">ppo</text>")) << text;
+  EXPECT_TRUE(has(text, ">no contact, no CBV was driven</text>")) << text;
   EXPECT_TRUE(has(text, "Roads are not drawn")) << text;
 }
 
@@ -157,7 +162,7 @@ TEST_F(TrailFigure, NamesPlannersWhoseRunsBroke) {
   add("s", "rift", 4.0);
   runs_.back().record.status = "error";
   runs_.back().record.cause = "SUMO died";
-  EXPECT_TRUE(has(svg(), "RIFT: error, SUMO died")) << svg();
+  EXPECT_TRUE(has(svg(), "rift: error, SUMO died")) << svg();
   EXPECT_EQ(chosenScene(runs_, TrailsOf::kCbvs).size(), 2U);
 }
 
@@ -184,7 +189,7 @@ TEST_F(TrailFigure, SaysWhatBecameOfEachEgo) {
   EXPECT_EQ(figure.csv.substr(0, 17), "ego_planner,tick,");
   const std::string text = page::sheetFile(figure.sheet);
   EXPECT_TRUE(has(text, ">One scene, driven by each ego planner<")) << text;
-  EXPECT_TRUE(has(text, ">PlanT</text>")) << text;
+  EXPECT_TRUE(has(text, ">plant</text>")) << text;
   EXPECT_TRUE(
       has(text, ">98.2 % of the route, driving score 68.7, 1 contact, 8.0 % off the road</text>"))
       << text;

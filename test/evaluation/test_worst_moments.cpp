@@ -22,12 +22,13 @@ TEST(WorstMoments, AreFaultsThenFastContactsThenApproaches) {
       runWith({}, 9.0),
       runWith({{1.5, "slow", false, "rear", 2.0, 3.0}, {4.0, "fast", false, "rear", 2.0, 9.0}},
               0.0),
-      runWith({{2.25, "own", true, "front", 1.0, 1.0}}, 0.0), runWith({}, 5.0)};
+      runWith({{2.25, "own", true, "front", 1.0, 1.0, false}}, 0.0), runWith({}, 5.0)};
   const std::vector<WorstMoment> worst = worstMoments(runs, 4);
   ASSERT_EQ(worst.size(), 4u);
   EXPECT_EQ(worst[0].run, 2u);
   EXPECT_DOUBLE_EQ(*worst[0].seconds, 2.25);
-  EXPECT_EQ(worst[0].text, "contact of the ego with own (the ego's fault): front");
+  EXPECT_EQ(worst[0].text,
+            "contact of the ego with background vehicle own (the ego's fault): front");
   EXPECT_DOUBLE_EQ(*worst[1].seconds, 4.0);
   EXPECT_DOUBLE_EQ(*worst[2].seconds, 1.5);
   EXPECT_EQ(worst[3].run, 3u);
@@ -46,6 +47,12 @@ TEST(WorstMoments, ContactsAreReadFromASummary) {
   EXPECT_DOUBLE_EQ(contacts[0].seconds, 15.8);
   EXPECT_TRUE(contacts[0].ego_at_fault);
   EXPECT_DOUBLE_EQ(contacts[0].other_speed, 10.5);
+  EXPECT_EQ(contacts[0].partnerText(), "v");  // of an earlier version
+  EXPECT_EQ(contactsIn(R"({"ego": {"contacts": [{"seconds": 15.8, "with": "v", "with_cbv": true,
+          "ego_at_fault": true, "why": "w", "ego_speed_mps": 8, "other_speed_mps": 10.5}]}})",
+                       "summary.json")[0]
+                .partnerText(),
+            "CBV v");
   EXPECT_TRUE(contactsIn("{}", "summary.json").empty());
   EXPECT_THROW(contactsIn(R"({"ego": {"contacts": [{}]}})", "summary.json"), core::InputError);
 }

@@ -60,11 +60,13 @@ TEST_F(EgoContactsMetric, TheEgoStrikesFromBehind) {
 TEST_F(EgoContactsMetric, ABackgroundVehicleIsStruckFromBehind) {
   meet(6, background("v", 44.6, 0, 1));
   EXPECT_EQ(counts(), (Counts{0, 0, 1, 0, 0, 0}));
+  EXPECT_FALSE(metrics_.measures().ego_contacts.at(0).with_cbv);
 }
 
 TEST_F(EgoContactsMetric, ACbvStrikesFromBehind) {
   meet(2, cbv("v", 35.4, 0, 8));
   EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 0, 0}));
+  EXPECT_TRUE(metrics_.measures().ego_contacts.at(0).with_cbv);
 }
 
 TEST_F(EgoContactsMetric, ABackgroundVehicleStrikesAStandingEgo) {

@@ -38,10 +38,20 @@ TEST_F(SessionCollisions, BetweenEgoAndCbvCountForBoth) {
   EXPECT_EQ(*measures.at("ego_collisions").value, 1U);
   EXPECT_EQ(*measures.at("cbv_collisions").value, 1U);
   EXPECT_EQ(*measures.at("cbv_ego_collisions").value, 1U);
+  EXPECT_EQ(*measures.at("cbv_moving_ego_collisions").value, 1U);
   EXPECT_NEAR(*measures.at("cbv_collisions_per_km").value, 10.0, 1e-9);
   EXPECT_EQ(measures.at("cbv_collisions_per_km").n, 2U);
   EXPECT_NEAR(*measures.at("cbv_ego_collisions_per_km").value, 10.0, 1e-9);
   EXPECT_NEAR(*measures.at("ego_driving_score").value, 6.0, 1e-9);
+}
+
+// 0.1 m/s and more is driving.
+TEST_F(SessionCollisions, WithAStandingEgoAreCountedApart) {
+  const SessionMeasures measures =
+      after({{"a", "ego"}}, {ego(10, 0, 0.09), cbv("a", 15, 0, 5), cbv("b", 110, 0, 5)});
+  EXPECT_EQ(*measures.at("cbv_ego_collisions").value, 1U);
+  EXPECT_EQ(*measures.at("cbv_moving_ego_collisions").value, 0U);
+  EXPECT_TRUE(measures.ego_contacts.at(0).with_cbv);
 }
 
 TEST_F(SessionCollisions, BetweenCbvAndBackgroundLeaveTheEgoAlone) {

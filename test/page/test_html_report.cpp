@@ -320,15 +320,16 @@ TEST(HtmlReport, ListsItsContentsAsLinks) {
   EXPECT_EQ(countOf(page, "<section id=\"what-happened\">"), 1u);
 }
 
-/// The page of a session in which bg_1, a CBV, touches the ego at tick 113, between two frames.
-std::string struckPage() {
+/// The page of a session in which a vehicle touches the ego at tick 113, between two frames, and
+/// is gone then.
+std::string struckPage(const std::string& by = "bg_1") {
   const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   for (std::uint64_t tick = 100; tick <= 116; ++tick) {
     traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
-    if (tick == 113) snapshot.contacts = {{"ego", "bg_1"}};
-    if (tick > 113) snapshot.vehicles.erase(snapshot.vehicles.begin() + 1);
+    if (tick == 113) snapshot.contacts = {{"ego", by}};
+    if (tick > 113) snapshot.vehicles.erase(snapshot.vehicles.begin() + (by == "bg_1" ? 1 : 2));
     if (tick == 116) snapshot.status = SessionStatus::kTimedOut;
     session::TickRecord record;
     record.snapshot = &snapshot;
@@ -351,6 +352,49 @@ TEST(HtmlReport, ShowsTheMomentOfAContact) {
       << moments;
   const std::string row = between(page, "<section id=\"contacts\">", "</section>");
   EXPECT_NE(row.find("<a class=\"time\" href=\"#t=5.65\">"), std::string::npos) << row;
+}
+
+// bg_1, the CBV, comes nearest at the end; bg_2 is background traffic.
+TEST(HtmlReport, OpensAtTheContactOfTheEgo) {
+  const std::string page = struckPage("bg_2");
+  const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
+  EXPECT_EQ(data["start"], 4);
+  ASSERT_EQ(data["touched"].size(), data["times"].size());
+  EXPECT_EQ(data["vehicles"][data["touched"][4].get<std::size_t>()][0], "bg_2");
+  EXPECT_EQ(data["touched"][3], -1);
+  const std::string banner = between(page, "class=\"banner", "</header>");
+  EXPECT_NE(banner.find("background vehicle bg_2"), std::string::npos) << banner;
+  const std::string tiles = between(page, "class=\"figures\"", "<nav");
+  EXPECT_NE(tiles.find("0 with CBVs + 1 with background"), std::string::npos) << tiles;
+}
+
+TEST(HtmlReport, FoldsManyContacts) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  for (std::uint64_t tick = 0; tick <= 10; ++tick) {
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    if (tick < 5) snapshot.contacts = {{"ego", "bg_" + std::to_string(10 + tick)}};
+    if (tick == 10) snapshot.status = SessionStatus::kTimedOut;
+    session::TickRecord record;
+    record.snapshot = &snapshot;
+    writer.observe(record);
+  }
+  writer.finish(1.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  const std::string banner = between(page, "class=\"banner", "</header>");
+  const std::string shown = banner.substr(0, banner.find("<details"));
+  EXPECT_NE(shown.find("; and 2 more"), std::string::npos) << shown;
+  EXPECT_EQ(shown.find("bg_13"), std::string::npos);
+  const std::string folded = between(banner, "<summary>All 5 contacts of the ego", "</details>");
+  EXPECT_EQ(countOf(folded, "<li>"), 5u);
+  EXPECT_NE(folded.find("bg_14"), std::string::npos);
+  EXPECT_EQ(countOf(struckPage(), "contacts of the ego</summary>"), 0u);
+}
+
+TEST(HtmlReport, DrawsPlansAboveVehicles) {
+  const std::string page = seenPage();
+  EXPECT_LT(page.find("<g id=\"vehicles\">"), page.find("<g id=\"plans\">"));
 }
 
 TEST(HtmlReport, DrawsThePlanOfEachMoment) {

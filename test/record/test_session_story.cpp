@@ -40,8 +40,8 @@ TEST(SessionStory, ReportsRouteApproachAndContact) {
   EXPECT_EQ(story[2],
             "bg_1 was the only CBV and came as near as 49.57 m between the outlines, at 6.00 s.");
   EXPECT_EQ(story[3],
-            "bg_2 and the ego touched at 2.00 s, the first of 2 contacts of the ego; the ego "
-            "was at fault in 1 of them.");
+            "The ego and background vehicle bg_2 touched at 2.00 s, the first of 2 contacts of the "
+            "ego; the ego was at fault in 1 of them.");
 }
 
 TEST(SessionStory, SaysWhenThereWasNoCbvAndNoContact) {

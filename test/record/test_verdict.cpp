@@ -26,7 +26,8 @@ metrics::SessionMeasures someMeasures() {
   measures.set(known::kStopSigns, {2.0, 2, "", ""});
   measures.set(known::kOutsideLanes, {1.25, 400, "%", ""});
   measures.set(known::kCbvOffRoad, {5.0, 100, "%", ""});
-  measures.ego_contacts = {{117, 5.85, "cbv_1", true, "it did", 5.0, 2.0, "front", "rear", 1, 2}};
+  measures.ego_contacts = {
+      {117, 5.85, "bg_1", true, "it did", 5.0, 2.0, "front", "rear", 1, 2, false, true}};
   return measures;
 }
 
@@ -51,7 +52,7 @@ TEST(Verdict, WithoutAnyRuleEverythingThatEndedByItselfIsNotJudged) {
 TEST(Verdict, ContactsAreReportedWhereNothingIsJudged) {
   metrics::SessionMeasures measures = someMeasures();
   measures.ego_contacts.push_back(
-      {118, 5.9, "cbv_2", false, "it did not", 5.0, 2.0, "rear", "front", 1, 2});
+      {118, 5.9, "bg_2", false, "it did not", 5.0, 2.0, "rear", "front", 1, 2});
   session::VerdictOptions rules = session::VerdictOptions::standard();
   rules.judge = false;
   const Verdict verdict = judged(rules, SessionStatus::kCompleted, measures);
@@ -59,9 +60,9 @@ TEST(Verdict, ContactsAreReportedWhereNothingIsJudged) {
   EXPECT_EQ(verdict.reasons,
             std::vector<std::string>(
                 {"the scenario is not to be judged (verdict.judge is false)",
-                 "the ego was at fault in 1 contact: with cbv_1 at 5.85 s (it did)",
-                 "the ego was struck without fault in 1 contact, by cbv_2 at 5.90 s (it did "
-                 "not)"}));
+                 "the ego was at fault in 1 contact: with CBV bg_1 at 5.85 s (it did)",
+                 "the ego was struck without fault in 1 contact, by background vehicle bg_2 at "
+                 "5.90 s (it did not)"}));
   EXPECT_TRUE(verdict.decided_by.empty());
 }
 
@@ -100,7 +101,7 @@ TEST(Verdict, NamesEveryRuleThatIsNotMet) {
       std::vector<std::string>(
           {"the session ended with status 'timed_out'; allowed: completed",
            "the ego completed 80.0 % of its route; at least 90 % is asked",
-           "the ego was at fault in 1 contact; at most 0 allowed: with cbv_1 at 5.85 s (it did)",
+           "the ego was at fault in 1 contact; at most 0 allowed: with CBV bg_1 at 5.85 s (it did)",
            "the ego's driving score by bench2drive was 33.6 %; at least 50 % is asked",
            "the ego had 1 collision; at most 0 allowed",
            "red lights that the ego ran: 1; at most 0 allowed",
@@ -155,6 +156,39 @@ TEST(Verdict, AContactThatNoBrakingAvoidsIsExcusedWhereTheRulesSaySo) {
             std::vector<std::string>{"contact_without_fault"});
   measures.ego_contacts = {contactOf("cbv_1", true, true)};
   EXPECT_EQ(outcome("by_mode", "safety_critical"), Outcome::kFailed);
+}
+
+TEST(Verdict, AReasonNamesThreeContactsAndCountsTheRest) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.ego_contacts.clear();
+  for (int i = 0; i < 23; ++i)
+    measures.ego_contacts.push_back(contactOf("bg_" + std::to_string(i), false, true));
+  session::VerdictOptions rules;
+  rules.contact_without_fault = "failed";
+  const std::string reason = judged(rules, SessionStatus::kCompleted, measures).reasons.at(0);
+  EXPECT_EQ(reason.rfind("the ego was struck without fault in 23 contacts, by background", 0), 0U);
+  EXPECT_NE(reason.find("; by background vehicle bg_2 at 0.00 s (); and 20 more"),
+            std::string::npos)
+      << reason;
+  EXPECT_EQ(reason.find("bg_3"), std::string::npos);
+}
+
+TEST(Verdict, TurnsOnTheFirstContactOfTheKindThatDecidedIt) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.ego_contacts = {contactOf("struck", false, true), contactOf("fault", true, true)};
+  session::ScenarioOptions options;
+  const auto decider = [&] {
+    const Verdict verdict = judge(options, SessionStatus::kCompleted, measures, {});
+    return decidingContact(options, verdict, measures.ego_contacts)->partner;
+  };
+  EXPECT_EQ(decider(), "fault") << "nothing is judged";
+  options.verdict.contact_without_fault = "struck";
+  EXPECT_EQ(decider(), "struck");
+  options.verdict.maximum_contacts_at_fault = 0.0;
+  EXPECT_EQ(decider(), "fault");
+  measures.ego_contacts.pop_back();
+  EXPECT_EQ(decider(), "struck");
+  EXPECT_EQ(decidingContact(options, {}, {}), nullptr);
 }
 
 // Whatever the ego's contacts were, the verdict's reasons and the story count them alike.

@@ -138,6 +138,7 @@ struct EgoContact {
   double x = 0.0;               ///< place of the contact, map frame [m]
   double y = 0.0;               ///< [m]
   bool braking_avoids = false;  ///< whether braking alone would have avoided it (docs/metrics.md)
+  bool with_cbv = false;        ///< whether the other was a CBV; else it was background traffic
 };
 
 /// One tick as metrics see it: the snapshot, the selection, and what several metrics need of them

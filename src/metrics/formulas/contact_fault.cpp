@@ -83,6 +83,11 @@ std::string speedText(double speed) {
   return core::formatFixed(shown, 2) + " m/s";
 }
 
+/// "5.00 m/s toward", or for a negative speed toward the other "2.00 m/s away".
+std::string motionText(double closing) {
+  return speedText(std::abs(closing)) + (closing <= -0.005 ? " away" : " toward");
+}
+
 /// Perpendicular to the lane, on the side of `normal`; `normal` where no lane is known.
 Eigen::Vector2d acrossLane(const ContactParty& ego, const ContactParty& other,
                            const Eigen::Vector2d& normal) {
@@ -97,6 +102,14 @@ struct Closing {
   double ego = 0.0;
   double other = 0.0;
   bool egoStrikes() const { return ego >= other - kTie; }
+  /// " at 3.00 m/s (ego 5.00 m/s toward, other 2.00 m/s away)": the speed of approach, then its
+  /// parts; of boxes that overlapped before, the speed at which they move apart.
+  std::string text() const {
+    const double approach = ego + other;
+    return (approach <= -0.005 ? " while moving apart at " : " at ") +
+           speedText(std::abs(approach)) + " (ego " + motionText(ego) + ", other " +
+           motionText(other) + ")";
+  }
 };
 
 void judgeSideBySide(const Closing& closing, ContactFault& fault) {
@@ -104,8 +117,7 @@ void judgeSideBySide(const Closing& closing, ContactFault& fault) {
   fault.reason =
       std::string("side by side, ") +
       (fault.ego_at_fault ? "the ego moved toward the other" : "the other moved toward the ego") +
-      ": across the lane " + speedText(closing.ego) + " (ego), " + speedText(closing.other) +
-      " (other)";
+      " across the lane" + closing.text();
 }
 
 void judgeStrike(const Closing& closing, ContactFault& fault) {
@@ -113,8 +125,7 @@ void judgeStrike(const Closing& closing, ContactFault& fault) {
   fault.reason = fault.ego_at_fault
                      ? "the ego's " + fault.ego_side + " struck the other's " + fault.other_side
                      : "the other's " + fault.other_side + " struck the ego's " + fault.ego_side;
-  fault.reason += ": closing speeds " + speedText(closing.ego) + " (ego), " +
-                  speedText(closing.other) + " (other)";
+  fault.reason += closing.text();
 }
 
 bool isPlaced(const traffic::Vehicle* vehicle) {

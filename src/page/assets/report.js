@@ -53,11 +53,17 @@
         found = [numbers[i], numbers[i + 5]];
     return found;
   };
-  // Shows ego and nearest CBV of a frame, the picture at least 60 m wide.
+  // The vehicle that the ego touches in a frame, else its nearest CBV; null without either.
+  const partnerOf = function (frame) {
+    if (data.touched[frame] >= 0) return data.touched[frame];
+    const near = nearestGap(frame);
+    return near === null ? null : near[0];
+  };
+  // Shows ego and partner of a frame, the picture at least 60 m wide.
   const focus = function (frame) {
-    const numbers = data.frames[frame], near = nearestGap(frame), places = [];
+    const numbers = data.frames[frame], partner = partnerOf(frame), places = [];
     for (let i = 0; i < numbers.length; i += 6)
-      if (numbers[i + 1] === 0 || (near !== null && numbers[i] === near[0]))
+      if (numbers[i + 1] === 0 || numbers[i] === partner)
         places.push({ x: numbers[i + 2] / 10, y: numbers[i + 3] / 10 });
     if (places.length === 0) return;
     const middle = (key) => places.reduce((sum, at) => sum + at[key], 0) / places.length;
@@ -324,6 +330,6 @@
   layer.replaceChildren();
   if (!fromAddress()) {
     show(data.start);
-    if (nearestGap(data.start) !== null) focus(data.start);
+    if (partnerOf(data.start) !== null) focus(data.start);
   }
 })();

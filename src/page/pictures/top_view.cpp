@@ -286,7 +286,7 @@ Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) 
       trailPaths(result, canvas, VehicleRole::kCbv) +
       trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
       perceivedSvg(result.timeline, canvas) + attentionSvg(result.timeline, canvas) +
-      element("g", {{"id", "plans"}}) + finalBoxes(result, canvas) +
+      finalBoxes(result, canvas) + element("g", {{"id", "plans"}}) +
       contactMarks(result.timeline, canvas) + conflictPoints(result, canvas) + scaleBarSvg(canvas);
   const double magnification = canvas.scale() * vehicleMagnification(canvas);
   return svgPicture("The session from above", {canvas.width(), canvas.height()},
