@@ -37,8 +37,8 @@ TEST(ContactFault, AStrikerFromBehindIsAtFault) {
   const ContactFault fault = judge(party({0, 0, 0, 5}), party({4.45, 0, 0, 2}));
   EXPECT_TRUE(fault.ego_at_fault);
   EXPECT_EQ(fault.reason,
-            "the ego's front struck the other's rear at 3.00 m/s (ego 5.00 m/s toward, other 2.00 "
-            "m/s away)");
+            "the ego's front struck the other's rear at 3.00 m/s: ego 5.00 m/s toward, other 2.00 "
+            "m/s away");
   EXPECT_EQ(fault.ego_side, "front");
   EXPECT_EQ(fault.other_side, "rear");
   EXPECT_NEAR(fault.point.x(), 2.1667, 1e-3);
@@ -49,15 +49,15 @@ TEST(ContactFault, AnEgoStruckInTheRearIsNot) {
   const ContactFault fault = judge(party({0, 0, 0, 0.6}), party({-4.45, 0, 0, 3.8}));
   EXPECT_FALSE(fault.ego_at_fault);
   EXPECT_EQ(fault.reason,
-            "the other's front struck the ego's rear at 3.20 m/s (ego 0.60 m/s away, other 3.80 "
-            "m/s toward)");
+            "the other's front struck the ego's rear at 3.20 m/s: ego 0.60 m/s away, other 3.80 "
+            "m/s toward");
 }
 
 TEST(ContactFault, BoxesThatOverlappedBeforeMayMoveApart) {
   // 4.2 m and 4.25 m: they overlap all the time, the one ahead is faster by 1 m/s.
   EXPECT_EQ(judge(party({0, 0, 0, 2}), party({4.25, 0, 0, 3})).reason,
-            "the ego's front struck the other's rear while moving apart at 1.00 m/s (ego 2.00 m/s "
-            "toward, other 3.00 m/s away)");
+            "the ego's front struck the other's rear while moving apart at 1.00 m/s: ego 2.00 m/s "
+            "toward, other 3.00 m/s away");
 }
 
 TEST(ContactFault, AFastStrikeIsJudgedWhereItBegan) {
@@ -86,13 +86,13 @@ TEST(ContactFault, TheFrontThatRunsIntoAFlankIsAtFault) {
   const ContactFault own = judge(party({0, 0, 0, 8}), party({3.0, 0.5, 90, 6}));
   EXPECT_TRUE(own.ego_at_fault);
   EXPECT_EQ(own.reason,
-            "the ego's front struck the other's left side at 8.00 m/s (ego 8.00 m/s toward, other "
-            "0.00 m/s toward)");
+            "the ego's front struck the other's left side at 8.00 m/s: ego 8.00 m/s toward, other "
+            "0.00 m/s");
   const ContactFault others = judge(party({0, 0, 0, 8}), party({0.5, -3.0, 90, 6}));
   EXPECT_FALSE(others.ego_at_fault);
   EXPECT_EQ(others.reason,
-            "the other's front struck the ego's right side at 6.00 m/s (ego 0.00 m/s toward, other "
-            "6.00 m/s toward)");
+            "the other's front struck the ego's right side at 6.00 m/s: ego 0.00 m/s, other "
+            "6.00 m/s toward");
 }
 
 TEST(ContactFault, TwoCornersThatMeetAtOnceAreTheEgosFault) {
@@ -137,8 +137,8 @@ TEST(ContactFault, SideBySideTheOneThatMovesAcrossTheLaneIsAtFault) {
   EXPECT_FALSE(fault.ego_at_fault);
   // 8 sin(10 deg) = 1.389.
   EXPECT_EQ(fault.reason,
-            "side by side, the other moved toward the ego across the lane at 1.39 m/s (ego 0.00 "
-            "m/s toward, other 1.39 m/s toward)");
+            "side by side, the other moved toward the ego across the lane at 1.39 m/s: ego 0.00 "
+            "m/s, other 1.39 m/s toward");
   EXPECT_EQ(fault.ego_side, "left side");
   EXPECT_EQ(fault.other_side, "right side");
   EXPECT_NEAR(fault.point.y(), 0.9, 1e-6);

@@ -280,10 +280,10 @@ std::string fewWarning(std::size_t seeds, std::size_t clusters, bool routes) {
   if (clusters < kLeastClusters) {
     const std::string noun = routes ? "route" : "cluster";
     text += std::string(text.empty() ? "" : " ") + "Only " + countText(clusters, noun) +
-            (!showsIntervals(clusters)
-                 ? ": too few for bootstrap intervals, which need " + std::to_string(kLeastRoutes) + "."
-                 : ": intervals by the bootstrap may be too narrow below " +
-                       std::to_string(kLeastClusters) + ".");
+            (!showsIntervals(clusters) ? ": too few for bootstrap intervals, which need " +
+                                             std::to_string(kLeastRoutes) + "."
+                                       : ": intervals by the bootstrap may be too narrow below " +
+                                             std::to_string(kLeastClusters) + ".");
   }
   return text;
 }

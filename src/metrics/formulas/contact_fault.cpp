@@ -83,9 +83,12 @@ std::string speedText(double speed) {
   return core::formatFixed(shown, 2) + " m/s";
 }
 
-/// "5.00 m/s toward", or for a negative speed toward the other "2.00 m/s away".
+/// "5.00 m/s toward", for a negative speed toward the other "2.00 m/s away"; without motion
+/// "0.00 m/s".
 std::string motionText(double closing) {
-  return speedText(std::abs(closing)) + (closing <= -0.005 ? " away" : " toward");
+  const std::string speed = speedText(std::abs(closing));
+  if (std::abs(closing) < 0.005) return speed;
+  return speed + (closing < 0.0 ? " away" : " toward");
 }
 
 /// Perpendicular to the lane, on the side of `normal`; `normal` where no lane is known.
@@ -102,13 +105,13 @@ struct Closing {
   double ego = 0.0;
   double other = 0.0;
   bool egoStrikes() const { return ego >= other - kTie; }
-  /// " at 3.00 m/s (ego 5.00 m/s toward, other 2.00 m/s away)": the speed of approach, then its
+  /// " at 3.00 m/s: ego 5.00 m/s toward, other 2.00 m/s away": the speed of approach, then its
   /// parts; of boxes that overlapped before, the speed at which they move apart.
   std::string text() const {
     const double approach = ego + other;
     return (approach <= -0.005 ? " while moving apart at " : " at ") +
-           speedText(std::abs(approach)) + " (ego " + motionText(ego) + ", other " +
-           motionText(other) + ")";
+           speedText(std::abs(approach)) + ": ego " + motionText(ego) + ", other " +
+           motionText(other);
   }
 };
 
