@@ -136,6 +136,7 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                           "wrong_way_percent",
                                           "collisions",
                                           "collisions_with_ego",
+                                          "collisions_with_moving_ego",
                                           "collisions_per_km",
                                           "collisions_with_ego_per_km",
                                           "struck_background",
