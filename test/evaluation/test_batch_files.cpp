@@ -247,10 +247,13 @@ std::string contactPage(const test::TemporaryFolder& folder, std::vector<RunReco
 TEST_F(BatchFiles, ThePageAnswersFirstAndLinksTheWorstMoment) {
   const test::TemporaryFolder folder;
   records_[0].measures["cbv_ego_collisions"] = 2.0;
+  records_[0].measures["cbv_moving_ego_collisions"] = 1.0;
   records_[0].measures["cbv_distance_m"] = 1000.0;
   const std::string page = contactPage(folder, records_);
-  expectIn("<div class=\"answer\"><p>pdm_lite: CBVs touched the ego 2 times in 1.00 km (2.0 per km",
-           page);
+  expectIn(
+      "<div class=\"answer\"><p>pdm_lite, for the ego driven by pdm_lite: CBVs touched the moving "
+      "ego 1 time in 1.00 km (1.0 per km",
+      page);
   EXPECT_LT(page.find("class=\"answer\""), page.find("class=\"banner"));
   expectIn(
       "<li><a href=\"runs/s_none_1_1/report.html#t=15.80\" title=\"s_none_1_1\">s, seed 1 at "
