@@ -35,7 +35,7 @@ struct CbvOptions {
   double period = 0.2;                 ///< between selections [s]
   std::string life_cycle = "by_mode";  ///< rift | reselect: release on a lost conflict, with
                                        ///< hysteresis | by_mode: reselect in challenging, else rift
-  double hysteresis = 0.1;          ///< reselect: a challenger's score must be better by this
+  double hysteresis = 0.1;             ///< reselect: a challenger's score must be better by this
   double lost_conflict_time = 2.0;  ///< reselect: released after this long without a conflict [s]
 
   /// The same with the life cycle of a mode in the place of by_mode.

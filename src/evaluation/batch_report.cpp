@@ -132,8 +132,12 @@ Markup momentsHtml(const std::vector<BatchRun>& runs, const SystemNames& names) 
                          names.of(factors) + ": " + moment.text) +
              "\n";
   }
-  return items.empty() ? page::pageNote("No contact, and no CBV near the ego.")
-                       : element("ol", {{"class", "worst"}}, "\n" + items) + "\n";
+  return items.empty()
+             ? page::pageNote("No contact, and no CBV near the ego.")
+             : page::pageNote(
+                   "Contacts of a moving ego first, those at its fault before others, then by "
+                   "the faster vehicle's speed.") +
+                   element("ol", {{"class", "worst"}}, "\n" + items) + "\n";
 }
 
 /// Those without a complete run come last.

@@ -11,17 +11,21 @@
 namespace cdiff::evaluation {
 namespace {
 
+constexpr double kStandingSpeed = 0.1;  // of an ego that was struck standing [m/s]
+
 /// A moment with what it is ranked by: the smaller tuple is the worse moment.
 struct RankedMoment {
   WorstMoment moment;
-  std::tuple<bool, bool, double> rank;  ///< no contact, no fault, - speed [m/s] or distance [m]
+  /// No contact, the ego stood, no fault, - speed [m/s] or distance [m].
+  std::tuple<bool, bool, bool, double> rank;
 };
 
 RankedMoment contactMoment(std::size_t run, const RunContact& contact) {
   const std::string fault = contact.ego_at_fault ? " (the ego's fault): " : " (not its fault): ";
   return {{run, contact.seconds,
            "contact of the ego with " + contact.partnerText() + fault + contact.why},
-          {false, !contact.ego_at_fault, -std::max(contact.ego_speed, contact.other_speed)}};
+          {false, contact.ego_speed < kStandingSpeed, !contact.ego_at_fault,
+           -std::max(contact.ego_speed, contact.other_speed)}};
 }
 
 std::optional<RankedMoment> approachMoment(std::size_t index, const RunRecord& record) {
@@ -30,7 +34,7 @@ std::optional<RankedMoment> approachMoment(std::size_t index, const RunRecord& r
   return RankedMoment{{index, std::nullopt,
                        "no contact; nearest CBV " + core::formatFixed(found->second, 1) +
                            " m away between centers"},
-                      {true, true, found->second}};
+                      {true, true, true, found->second}};
 }
 
 }  // namespace

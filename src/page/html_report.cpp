@@ -130,6 +130,12 @@ Markup egoTiles(const record::SessionResult& result) {
   const metrics::SessionMeasures& measures = result.measures;
   const std::size_t with_cbvs = measures.count(known::kCbvEgoCollisions);
   const std::size_t all = std::max(with_cbvs, measures.count(known::kEgoCollisions));
+  const session::ScenarioOptions& options = result.setup.options();
+  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
+  const auto excused = std::count_if(
+      measures.ego_contacts.begin(), measures.ego_contacts.end(), [&](const auto& contact) {
+        return record::blameOf(contact, excuses) == record::Blame::kExcused;
+      });
   return tile(known::kRouteCompletion.label,
               core::formatFixed(measures.number(known::kRouteCompletion), 1), "%",
               traffic::toText(result.status)) +
@@ -139,7 +145,8 @@ Markup egoTiles(const record::SessionResult& result) {
          tile(known::kEgoCollisions.label, std::to_string(all), "",
               std::to_string(with_cbvs) + " with CBVs + " + std::to_string(all - with_cbvs) +
                   " with background, " + std::to_string(measures.count(known::kContactsAtFault)) +
-                  " its fault, " + std::to_string(measures.count(known::kEgoBrakingAvoids)) +
+                  " its fault" + (excused > 0 ? " (" + std::to_string(excused) + " excused)" : "") +
+                  ", " + std::to_string(measures.count(known::kEgoBrakingAvoids)) +
                   " avoided by braking");
 }
 

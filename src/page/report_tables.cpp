@@ -204,21 +204,32 @@ Markup rejectionTable(const record::CbvLog& cbv) {
   return table.html();
 }
 
+namespace {
+
+const char* blameText(record::Blame blame) {
+  if (blame == record::Blame::kNone) return "no";
+  return blame == record::Blame::kExcused ? "yes, excused" : "yes";
+}
+
+}  // namespace
+
 Markup contactTable(const record::SessionResult& result) {
   const auto& all = result.timeline.contacts();
   if (all.empty()) return pageNote("No vehicles touched.");
   HtmlTable table({"#Time [s]", "Vehicle", "Vehicle", "Ego at fault", "Why", "#Ego [m/s]",
                    "#Other [m/s]", "Braking avoids it"});
   auto own = result.measures.ego_contacts.begin();  // in the order of `all`
+  const session::ScenarioOptions& options = result.setup.options();
+  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
   for (const record::TimelineContact& contact : all) {
     std::vector<Markup> cells = {timeLink(contact.time), contact.first, contact.second};
     const bool ego = own != result.measures.ego_contacts.end() &&
                      (contact.first == own->partner || contact.second == own->partner) &&
                      contact.time == own->seconds;
     if (ego) {
-      cells.insert(cells.end(),
-                   {own->ego_at_fault ? "yes" : "no", own->reason, fixed(own->ego_speed, 1),
-                    fixed(own->partner_speed, 1), own->braking_avoids ? "yes" : "no"});
+      cells.insert(cells.end(), {blameText(record::blameOf(*own, excuses)), own->reason,
+                                 fixed(own->ego_speed, 1), fixed(own->partner_speed, 1),
+                                 own->braking_avoids ? "yes" : "no"});
       ++own;
     } else {
       cells.insert(cells.end(), {"–", "", "", "", ""});

@@ -27,7 +27,7 @@ struct ChallengeTrial {
   std::string refusal;  ///< empty: it may be driven
   /// Time until C in the ego's place is touched [s].
   double margin = std::numeric_limits<double>::infinity();
-  std::optional<double> hit_time;    ///< when an ego that keeps its speed is touched [s]
+  std::optional<double> hit_time;  ///< when an ego that keeps its speed is touched [s]
   /// When it is touched after the plan, with the CBV on its lane [s].
   std::optional<double> approach_time;
   double delta = 0.0;                ///< largest extra delay with which C answers it [s]

@@ -73,14 +73,14 @@ void requireAhead(double now, const std::vector<TimedPlace>& trajectory) {
     if (!std::isfinite(place.time) || !place.position.allFinite())
       throw InputError(name + " is not finite; expected x and y in m in the frame map");
     if (i > 0 && place.time <= trajectory[i - 1].time) {
-      throw InputError(name + " is of " + formatNumber(place.time) + " s, the one before of " +
-                       formatNumber(trajectory[i - 1].time) + " s; expected rising stamps");
+      throw InputError(name + " is " + core::formatFixed(trajectory[i - 1].time - place.time, 2) +
+                       " s before the one before it; expected rising stamps");
     }
   }
   if (trajectory.back().time > now) return;
-  throw InputError("the trajectory lies in the past: its last pose is of " +
-                   formatNumber(trajectory.back().time) + " s, and it is " + formatNumber(now) +
-                   " s; expected stamps of simulated time ahead");
+  throw InputError("the trajectory lies in the past: its last pose is " +
+                   core::formatFixed(now - trajectory.back().time, 2) +
+                   " s old; expected stamps of simulated time ahead");
 }
 
 }  // namespace

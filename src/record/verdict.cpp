@@ -309,6 +309,10 @@ std::string faultText(const session::ScenarioOptions& options,
   if (contacts.size() == 1 && excused > 0)
     return "the ego is excused, as no braking would have avoided it";
   if (contacts.size() == 1) return fault > 0 ? "the ego was at fault" : "the ego was not at fault";
+  if (fault == 0 && excused > 0) {
+    return "the ego is excused in " + std::to_string(excused) +
+           " of them, which no braking would have avoided";
+  }
   return "the ego was at fault in " + (fault == 0 ? "none" : std::to_string(fault)) + " of them" +
          (excused == 0 ? ""
                        : ", and is excused in " + std::to_string(excused) +

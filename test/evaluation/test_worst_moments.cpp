@@ -38,6 +38,12 @@ TEST(WorstMoments, AreFaultsThenFastContactsThenApproaches) {
   EXPECT_TRUE(worstMoments({}, 5).empty());
 }
 
+TEST(WorstMoments, OfAMovingEgoComeBeforeFasterOnesOfAStandingEgo) {
+  const std::vector<BatchRun> runs = {runWith(
+      {{1.0, "jam", false, "rear", 0.0, 9.0}, {2.0, "cut_in", false, "side", 3.0, 4.0}}, 0.0)};
+  EXPECT_DOUBLE_EQ(*worstMoments(runs)[0].seconds, 2.0);
+}
+
 TEST(WorstMoments, ContactsAreReadFromASummary) {
   const auto contacts = contactsIn(
       R"({"ego": {"contacts": [{"seconds": 15.8, "with": "v", "ego_at_fault": true, "why": "w",

@@ -21,7 +21,9 @@ struct PlannerRole {
   std::string name() const { return planner + (ego ? "_as_ego" : "_as_cbv"); }
 };
 
-void PrintTo(const PlannerRole& role, std::ostream* stream) { *stream << role.name(); }
+void PrintTo(const PlannerRole& role, std::ostream* stream) {  // NOLINT: a name of GoogleTest
+  *stream << role.name();
+}
 
 std::vector<PlannerRole> rolesThatAre(bool possible) {
   std::vector<PlannerRole> roles;

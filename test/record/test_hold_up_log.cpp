@@ -56,7 +56,8 @@ TEST_F(HoldUps, OfABlockedEgoIsWhoStandsAhead) {
   EXPECT_NEAR(found->traffic_still.value_or(-1.0), 1.95, 1e-9);  // since tick 61
   EXPECT_TRUE(found->cbvs.empty());
   const std::string sentence = text(SessionStatus::kBlocked);
-  for (const char* part : {"stood 4.0 s behind ahead", "had not moved for", "no CBV had a part"})
+  for (const char* part :
+       {"stood 4.0 s behind ahead", "had not moved for", "no CBV waits in this queue"})
     expectIn(sentence, part);
 }
 

@@ -30,8 +30,8 @@ struct ChallengePlan {
 /// keeps its heading. A plan *hits* if an ego that keeps its speed along its route touches it with
 /// the CBV moving and not behind its rear axle. Chosen is, of the plans that hit and are answered,
 /// the one that C answers with the least extra delay of at least delta_min (easy 0.6 s, medium
-/// 0.3 s, hard 0.1 s); else, of those that are answered, the one that hits soonest after its end and
-/// within 8 s, with the CBV on its lane; else the one of the lowest score.
+/// 0.3 s, hard 0.1 s); else, of those that are answered, the one that hits soonest after its end
+/// and within 8 s, with the CBV on its lane; else the one of the lowest score.
 ///
 /// The first hit is a promise. A ghost starts where the ego is and is driven by C; until it is
 /// clear, or for 4 s, every plan must leave the ghost an answer, and the ego, too, unless it is the

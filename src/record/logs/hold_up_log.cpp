@@ -94,7 +94,7 @@ std::string causeText(const WaitChain& chain) {
   const Wait& last = chain.waits.back();
   const std::string& cause =
       last.reason == Wait::For::kVehicle && !chain.ring ? last.obstacle : last.vehicle;
-  return "no CBV had a part in it, " + cause + " is background traffic";
+  return "no CBV waits in this queue, " + cause + " is background traffic";
 }
 
 std::optional<session::DemandFile> demandOf(const session::ScenarioOptions& options) {
