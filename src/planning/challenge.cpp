@@ -209,7 +209,8 @@ ChallengeTrial Challenge::Parts::examine(const traffic::Vehicle& cbv, const Chal
   return trial;
 }
 
-/// For the choice, the lowest first. Of plans that are refused, the one that leaves C longest.
+/// For the choice, the lowest first. A promised plan goes first while it still hits. Of plans that
+/// are refused, the one that leaves C longest.
 std::tuple<int, std::size_t, double> Challenge::Parts::rankOf(const ChallengePlan& plan,
                                                               const ChallengeTrial& trial,
                                                               const Attack& attack) const {

@@ -79,6 +79,12 @@ std::vector<traffic::VehicleState> alongLane(const traffic::Vehicle& cbv,
   return forecastMotion(vehicle, network, {}, steps);
 }
 
+/// From the end of a plan, which may be longer, to a time from now [s].
+std::size_t stepsAfter(const ForeseenVehicle& planned, double time) {
+  const double rest = time - kForeseenStep * static_cast<double>(planned.states.size() - 1);
+  return static_cast<std::size_t>(std::max(0.0, std::ceil(rest / kForeseenStep)));
+}
+
 /// Whether the middle of what the boxes share along the ego lies behind its rear axle.
 bool isBehind(const geometry::OrientedBox& ego, const geometry::OrientedBox& cbv) {
   const geometry::Pose2d frame{ego.center, ego.heading};
@@ -126,8 +132,7 @@ void ChallengeCourse::findApproach(const traffic::Vehicle& cbv, ChallengeTrial& 
   const traffic::VehicleState& end = planned.states.back();
   if (own_.speed <= kStandingEgo || end.speed < kCrawlingSpeed) return;
   ForeseenVehicle motion = planned;
-  const auto steps = static_cast<std::size_t>(std::lround(kApproachTime / kForeseenStep) -
-                                              static_cast<long>(planned.states.size()) + 1);
+  const std::size_t steps = stepsAfter(planned, kApproachTime);
   const auto tail = alongLane(cbv, end, context_.network, steps);
   motion.states.insert(motion.states.end(), tail.begin(), tail.end());
   ChallengeTrial later;
@@ -138,10 +143,8 @@ void ChallengeCourse::findApproach(const traffic::Vehicle& cbv, ChallengeTrial& 
 
 /// Three ways to go on after the plan.
 void ChallengeCourse::addTails(const traffic::Vehicle& cbv, ChallengeTrial& trial) const {
-  const std::vector<traffic::VehicleState> planned = trial.motions.front().states;
-  const double rest = duration() - kForeseenStep * static_cast<double>(planned.size() - 1);
-  const auto steps = static_cast<std::size_t>(std::max(0.0, std::ceil(rest / kForeseenStep)));
-  const traffic::VehicleState& end = planned.back();
+  const std::size_t steps = stepsAfter(trial.motions.front(), duration());
+  const traffic::VehicleState end = trial.motions.front().states.back();
   const std::array<std::vector<traffic::VehicleState>, 3> tails{
       alongLane(cbv, end, context_.network, steps), straightOn(end, kHardBraking, steps),
       straightOn(end, 0.0, steps)};

@@ -20,8 +20,8 @@ struct RepeatedFault {
   std::string text() const;
 };
 
-/// Faults of equal source and text as one, so that a node that sends the same bad command ten times
-/// a second is told once. Ordered by the last time: the last one is the last of `faults`.
+/// Faults of equal source and text as one: a node may send the same bad command at every decision.
+/// They are ordered by their last times, so the fault that ended a session stays the last.
 std::vector<RepeatedFault> repeatedFaults(const std::vector<traffic::Fault>& faults);
 
 }  // namespace cdiff::record

@@ -24,7 +24,7 @@ enum class ConflictKind {
 const char* toText(ConflictKind kind);
 
 /// The times, counted from now [s], between which something holds. It is empty where the end is not
-/// after the begin.
+/// after the beginning.
 struct TimeSpan {
   double begin = 0.0;
   double end = -1.0;

@@ -103,6 +103,19 @@ TEST_F(ChallengeTest, PrefersAnApproachThatLeadsToAHitAfterThePlan) {
   EXPECT_FALSE(report.ghost.has_value());
 }
 
+TEST_F(ChallengeTest, TakesAPlanThatIsLongerThanAnApproach) {
+  const traffic::Vehicle far = vehicleAt("cbv", {160.0, 60.0}, 0.0, 5.0);
+  ChallengePlan plan = planOf(far);
+  plan.states.insert(plan.states.end(), 100, plan.states.back());
+  traffic::TrafficSnapshot snapshot;
+  snapshot.vehicles = {vehicleAt("ego", {100.0, 0.0}, 0.0, 8.0), far};
+  Challenge challenge(context_, "medium");
+  challenge.startDecision(snapshot);
+  const auto report = challenge.choose(far, {plan});
+  EXPECT_EQ(report.state, "drives");
+  EXPECT_EQ(report.refusals, std::vector<std::string>(1));
+}
+
 TEST_F(ChallengeTest, AsksForMoreTimeAtAnEasierLevel) {
   Challenge hard(context_, "hard");
   const double delta = decide(hard, crossing_).delta;
