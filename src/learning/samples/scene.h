@@ -16,7 +16,8 @@
 namespace cdiff::learning {
 
 // Scenes: all that any learner needs of a session, without its images, which are rendered again
-// from it to the same bytes. `*.scene` files hold one session each.
+// from it to the same bytes. `*.scene` files hold one session each; `cdiff collect --scenes` writes
+// them (collection/scene_recorder.h).
 
 /// How the driver of a vehicle drives (SI units): target speed, and the style of
 /// planners::DrivingStyle.
