@@ -64,7 +64,7 @@ std::string crowdWarning(const SessionSetup& setup) {
   const double held = jamCapacity(setup.network());
   if (asked <= kCrowd || (asked <= held && asked <= kMost)) return "";
   return "demand '" + options.demand + "' has " + core::formatFixed(asked, 0) +
-         " vehicles within the session's " + core::formatFixed(seconds, 0) +
+         " vehicles depart within the session's " + core::formatFixed(seconds, 0) +
          " s, and the network's lanes hold " + core::formatFixed(held, 0) +
          " bumper to bumper: the roads jam, the others wait outside, and the session is slow; "
          "give at most " +
