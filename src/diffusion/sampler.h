@@ -82,6 +82,11 @@ class Sampler {
   Sampler(const SamplerOptions& options, const NoiseSchedule& schedule,
           const traffic::Rollout& spread, const core::RandomStream& noise);
 
+  /// Other values of the options that are a matter of guidance, from the next call on.
+  void setGuidance(double trust_region, double noise_correlation) {
+    options_.trust_region = trust_region;
+    options_.noise_correlation = noise_correlation;
+  }
   /// Draws all requests as one batch, for the contexts that `denoiser` holds (same order and
   /// count). Cold or warm starts, not both (std::invalid_argument); modes other than real_time
   /// start cold. `objective` may be nullptr.

@@ -117,6 +117,10 @@ std::vector<PlannedAction> PlannerBySlot::plan(const traffic::TrafficSnapshot& s
   return actions;
 }
 
+void PlannerBySlot::setGuidance(const guidance::GuidanceOptions& guidance) {
+  for (const Member& member : members_) member.planner->setGuidance(guidance);
+}
+
 std::vector<std::string> planningMembers(const std::string& joined) {
   return core::splitText(joined, '+');
 }

@@ -24,6 +24,7 @@ class PlannerBySlot final : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
+  void setGuidance(const guidance::GuidanceOptions& guidance) override;
 
  private:
   std::vector<Member> members_;

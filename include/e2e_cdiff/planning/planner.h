@@ -58,6 +58,10 @@ class Planner {
   /// same actions.
   virtual std::vector<PlannedAction> plan(const traffic::TrafficSnapshot& snapshot,
                                           const std::vector<PlanningTask>& tasks) = 0;
+  /// Follows this guidance from the next call of `plan` on. Planners that are not guided do
+  /// nothing. Throws InputError, and follows what it followed before, for guidance that it cannot
+  /// follow.
+  virtual void setGuidance(const guidance::GuidanceOptions&) {}
 };
 
 }  // namespace cdiff::planning

@@ -64,8 +64,9 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
                                    const std::string& guidance_group)
     : options_(options),
       guidance_(guidance),
+      guidance_group_(guidance_group),
       vehicle_(vehicle),
-      simulation_step_(context.simulation_step),
+      context_(context),
       model_(loadChecked(options, guidance, guidance_group)),
       schedule_(static_cast<int>(model_.architecture.diffusion_steps)),
       sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
@@ -73,12 +74,29 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       exact_(vehicle, dynamics::throttleResponse(options.response)),
       situations_(options_, guidance_, vehicle, context, model_, exact_),
       choice_(guidance_, options.hysteresis, model_.normalizer, exact_),
-      workers_(options, model_, situations_.conditionsOnRoute() && options.route_scale != 1.0) {
+      workers_(options, model_, options.conditioning != "image" && options.route_scale != 1.0) {
+  requireWindows(guidance_);
+  prepareChallenge();
+}
+
+void DiffusionPlanner::requireWindows(const guidance::GuidanceOptions& guidance) const {
+  if (options_.sampler.mode == "unguided") return;
+  guidance.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group_);
+}
+
+void DiffusionPlanner::prepareChallenge() {
+  challenge_.reset();
   if (guidance_.challenge != "off")
-    challenge_ = std::make_unique<ChallengeChoice>(guidance_, context, choice_, exact_);
-  if (options.sampler.mode != "unguided") {
-    guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group);
-  }
+    challenge_ = std::make_unique<ChallengeChoice>(guidance_, context_, choice_, exact_);
+}
+
+void DiffusionPlanner::setGuidance(const guidance::GuidanceOptions& guidance) {
+  guidance.validate(guidance_group_);
+  requireWindows(guidance);
+  const bool other_challenge = guidance.challenge != guidance_.challenge;
+  guidance_ = guidance;
+  sampler_.setGuidance(guidance.trust_region, guidance.noise_correlation);
+  if (other_challenge) prepareChallenge();
 }
 
 std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTask& task,
@@ -88,7 +106,7 @@ std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTas
   const diffusion::Architecture& sizes = model_.architecture;
   const ImageExpectation expectation{static_cast<int>(sizes.image_width),
                                      static_cast<int>(sizes.image_height),
-                                     options_.frozen_image_time, simulation_step_};
+                                     options_.frozen_image_time, context_.simulation_step};
   const traffic::CameraImage* image = task.views.find(rendering::kFrontCamera);
   if (auto fault = memory.watch.fault(expectation, image, task.vehicle->state, tick)) return fault;
   const bool has_route = task.route != nullptr && !task.route->empty();
@@ -149,7 +167,7 @@ void DiffusionPlanner::solvePart(std::uint64_t tick, Worker& worker,
       objectives.push_back(situation.objectives[candidate].get());
     }
   }
-  diffusion::Denoiser& denoiser = worker.denoiser();
+  diffusion::Denoiser& denoiser = worker.denoiser(situations_.conditionsOnRoute());
   denoiser.setContexts(contexts);
   const auto branch = stateBranch(denoiser, contexts);
   GuidedBatch guided(model_.normalizer, objectives);

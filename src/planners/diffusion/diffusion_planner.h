@@ -49,6 +49,7 @@ class DiffusionPlanner : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
+  void setGuidance(const guidance::GuidanceOptions& guidance) override;
   const diffusion::Model& model() const { return model_; }
 
  private:
@@ -67,6 +68,10 @@ class DiffusionPlanner : public planning::Planner {
                                    const std::vector<planning::PlanningTask>& tasks,
                                    std::vector<planning::PlannedAction>& actions);
   void encodeImages(std::uint64_t tick, const std::vector<PlannedVehicle>& vehicles);
+  /// Throws InputError for guidance that the model or the sampler cannot follow.
+  void requireWindows(const guidance::GuidanceOptions& guidance) const;
+  /// Starts the choice of mode challenging anew, where guidance asks for it.
+  void prepareChallenge();
   std::unique_ptr<diffusion::StateBranch> stateBranch(
       diffusion::Denoiser& denoiser, const std::vector<diffusion::Context>& contexts) const;
   /// Samples the candidates of all situations, each worker its share, and chooses among them. All
@@ -80,8 +85,9 @@ class DiffusionPlanner : public planning::Planner {
 
   DiffusionOptions options_;
   guidance::GuidanceOptions guidance_;
+  std::string guidance_group_;
   dynamics::BicycleModelOptions vehicle_;
-  double simulation_step_;  ///< [s]
+  planning::PlanningContext context_;
   diffusion::Model model_;
   diffusion::NoiseSchedule schedule_;
   diffusion::Sampler sampler_;

@@ -25,7 +25,6 @@ SituationMaker::SituationMaker(const DiffusionOptions& options,
                                const diffusion::Model& model, const dynamics::ActionRollout& exact)
     : options_(options),
       guidance_(guidance),
-      conditions_on_route_(options.conditioningUnder(guidance) == "image_route"),
       vehicle_(vehicle),
       context_(context),
       model_(model),
@@ -57,7 +56,7 @@ void SituationMaker::startDecision(const traffic::TrafficSnapshot& snapshot,
     if (task->route == nullptr || task->route->empty()) continue;
     const traffic::Vehicle& vehicle = *task->vehicle;
     memory->follower.update(*task->route, vehicle.state.position);
-    if (!conditions_on_route_) continue;
+    if (!conditionsOnRoute()) continue;
     const double arc_length = memory->follower.arcLength();
     companions_[vehicle.id] = {
         vehicle.state, vehicle.dimensions,
@@ -140,7 +139,7 @@ void SituationMaker::setRoute(const PlannedVehicle& vehicle, DiffusionSituation&
   scene.route_arc_length = arc_length;
   const double place = std::clamp(arc_length, 0.0, task.route->length());
   scene.target_speed = std::min(task.target_speed, task.route->speedLimitAt(place));
-  if (!conditions_on_route_) return;
+  if (!conditionsOnRoute()) return;
   situation.context.route = diffusion::routeTokens(model_.architecture, task.route->path(),
                                                    arc_length, task.vehicle->state.pose());
 }
@@ -177,7 +176,7 @@ std::unique_ptr<DiffusionSituation> SituationMaker::make(const traffic::TrafficS
   situation->context.speed = task.vehicle->state.speed;
   situation->context.image_features = memory.features;
   setRoute(vehicle, *situation);
-  if (conditions_on_route_) addMotion(snapshot.tick, memory, *situation);
+  if (conditionsOnRoute()) addMotion(snapshot.tick, memory, *situation);
   setOther(snapshot, *situation);
   setWarmStart(snapshot.tick, memory.plan, *situation);
   addObjectives(*situation);

@@ -63,7 +63,7 @@ struct PlannedVehicle {
 ///  - Attackers are not given their route (DiffusionOptions::conditioningUnder); whoever is not
 ///    gets neither the image before nor the target speed of a model that takes them, so that
 ///    `image` is the paper's single image.
-/// References must outlive it.
+/// References must outlive it; the guidance may change between decisions.
 class SituationMaker {
  public:
   /// `exact`: how the vehicles execute a plan.
@@ -73,7 +73,7 @@ class SituationMaker {
                  const dynamics::ActionRollout& exact);
 
   /// Whether the network is given more than the image.
-  bool conditionsOnRoute() const { return conditions_on_route_; }
+  bool conditionsOnRoute() const { return options_.conditioningUnder(guidance_) == "image_route"; }
   /// Ticks between a decision's image and the one before that the model takes; 0: it takes none.
   std::uint64_t ticksToPrevious() const;
   /// Starts a decision: moves the ego and the planned vehicles along their routes to where they are
@@ -103,7 +103,6 @@ class SituationMaker {
 
   const DiffusionOptions& options_;
   const guidance::GuidanceOptions& guidance_;
-  bool conditions_on_route_;
   dynamics::BicycleModelOptions vehicle_;
   planning::PlanningContext context_;
   const diffusion::Model& model_;

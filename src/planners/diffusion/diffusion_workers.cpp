@@ -21,23 +21,23 @@ diffusion::ImageEncoder encoderFor(const DiffusionOptions& options, const diffus
 
 }  // namespace
 
-Worker::Worker(const DiffusionOptions& options, const diffusion::Model& model, bool scaled_route)
+Worker::Worker(const DiffusionOptions& options, const diffusion::Model& model, bool may_scale_route)
     : encoder_(encoderFor(options, model)), denoiser_(model, instructionSetOf(options)) {
-  if (!scaled_route) return;
+  if (!may_scale_route) return;
   routeless_ = std::make_unique<diffusion::CpuDenoiser>(model, instructionSetOf(options));
   scaled_ =
       std::make_unique<diffusion::RouteScaledDenoiser>(denoiser_, *routeless_, options.route_scale);
 }
 
-diffusion::Denoiser& Worker::denoiser() {
-  if (scaled_) return *scaled_;
+diffusion::Denoiser& Worker::denoiser(bool route) {
+  if (route && scaled_) return *scaled_;
   return denoiser_;
 }
 
 DiffusionWorkers::DiffusionWorkers(const DiffusionOptions& options, const diffusion::Model& model,
-                                   bool scaled_route) {
+                                   bool may_scale_route) {
   for (std::int64_t i = 0; i < options.threads; ++i)
-    workers_.push_back(std::make_unique<Worker>(options, model, scaled_route));
+    workers_.push_back(std::make_unique<Worker>(options, model, may_scale_route));
 }
 
 void DiffusionWorkers::forEach(std::size_t count, const Part& part) {

@@ -17,11 +17,13 @@ namespace cdiff::planners {
 /// Encoder and denoiser of a model for one thread.
 class Worker {
  public:
-  /// `scaled_route`: the denoiser mixes predictions with and without the route (route_scale).
-  Worker(const DiffusionOptions& options, const diffusion::Model& model, bool scaled_route);
+  /// `may_scale_route`: whether `denoiser` may be asked to mix predictions (route_scale).
+  Worker(const DiffusionOptions& options, const diffusion::Model& model, bool may_scale_route);
 
   diffusion::ImageEncoder& encoder() { return encoder_; }
-  diffusion::Denoiser& denoiser();
+  /// `route`: whether its vehicles are given their routes, with which and without which it then
+  /// mixes predictions where route_scale is not 1.
+  diffusion::Denoiser& denoiser(bool route);
 
  private:
   diffusion::ImageEncoder encoder_;
@@ -35,7 +37,7 @@ class DiffusionWorkers {
  public:
   /// As Worker.
   DiffusionWorkers(const DiffusionOptions& options, const diffusion::Model& model,
-                   bool scaled_route);
+                   bool may_scale_route);
 
   using Part = std::function<void(Worker& worker, std::size_t begin, std::size_t end)>;
   /// Calls `part` for every worker with the range of `count` items that is its share, each in a

@@ -53,6 +53,31 @@ TEST_F(DiffusionPlannerTest, SameCallsSameActionsAndEachVehicleAlone) {
   }
 }
 
+TEST_F(DiffusionPlannerTest, FollowsOtherGuidanceAsIfMadeWithIt) {
+  DiffusionPlanner steered = makePlanner();
+  const auto unsteered = makePlanner().plan(snapshot_, tasks());
+  guidance_ = guidance::loadProfile("safety_critical");
+  const auto expected = makePlanner().plan(snapshot_, tasks());
+  steered.setGuidance(guidance_);
+  const auto actions = steered.plan(snapshot_, tasks());
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(actions[i].action, expected[i].action);
+    EXPECT_FALSE(actions[i].action == unsteered[i].action);
+    EXPECT_EQ(actions[i].guidance.candidates, guidance_.candidates);
+  }
+}
+
+TEST_F(DiffusionPlannerTest, KeepsItsGuidanceWhereItCannotFollow) {
+  DiffusionPlanner planner = makePlanner();
+  DiffusionPlanner untouched = makePlanner();
+  guidance::GuidanceOptions bad = guidance_;
+  bad.find("speed").weight = 1.0;
+  bad.find("speed").first_step = 9999;
+  EXPECT_THROW(planner.setGuidance(bad), core::InputError);
+  EXPECT_EQ(planner.plan(snapshot_, tasks())[0].action,
+            untouched.plan(snapshot_, tasks())[0].action);
+}
+
 TEST_F(DiffusionPlannerTest, AnotherSeedAnotherPlan) {
   DiffusionPlanner first = makePlanner();
   context_.seed = 2;

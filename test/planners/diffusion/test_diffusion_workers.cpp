@@ -37,8 +37,9 @@ TEST(Worker, MixesPredictionsWhereTheRouteIsScaled) {
   const diffusion::Model model = cdiff::testing::randomModel();
   Worker plain({}, model, false);
   Worker scaled({}, model, true);
-  EXPECT_EQ(dynamic_cast<diffusion::RouteScaledDenoiser*>(&plain.denoiser()), nullptr);
-  EXPECT_NE(dynamic_cast<diffusion::RouteScaledDenoiser*>(&scaled.denoiser()), nullptr);
+  EXPECT_EQ(dynamic_cast<diffusion::RouteScaledDenoiser*>(&plain.denoiser(true)), nullptr);
+  EXPECT_NE(dynamic_cast<diffusion::RouteScaledDenoiser*>(&scaled.denoiser(true)), nullptr);
+  EXPECT_EQ(dynamic_cast<diffusion::RouteScaledDenoiser*>(&scaled.denoiser(false)), nullptr);
 }
 
 }  // namespace
