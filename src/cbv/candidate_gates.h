@@ -10,6 +10,8 @@ namespace cdiff::cbv {
 
 // Fixed words that say why a vehicle is not a CBV, in the order in which the gates are tried.
 
+/// CbvOptions::only does not name it.
+inline constexpr const char* kNotNamed = "not_named";
 /// It was a CBV before (life cycle "rift").
 inline constexpr const char* kAlreadyChosen = "already_chosen";
 /// It touches another vehicle and is about to be removed.

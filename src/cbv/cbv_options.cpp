@@ -79,6 +79,7 @@ void describeTimes(CbvOptions& options, core::OptionsVisitor& visitor) {
 }  // namespace
 
 void CbvOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.list({"only", "", "Ids of the vehicles that may become CBVs; empty: all may."}, only);
   visitor.text({"ranking", "",
                 "Order in which candidates fill the slots: by score, nearest to the ego first, or "
                 "whoever passes the gates, by id."},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/core/options.h"
@@ -13,6 +14,7 @@ namespace cdiff::cbv {
 
 /// Options of CBV identification; defaults: RIFT's rule.yaml in evaluation.
 struct CbvOptions {
+  std::vector<std::string> only;        ///< ids of the vehicles that may be taken; empty: all
   std::string ranking = "score";        ///< score | nearest | gates
   double search_radius = 60.0;          ///< ego center to candidate center [m]
   double minimum_distance = 10.0;       ///< [m]

@@ -104,7 +104,9 @@ CbvSelection CbvSelector::update(const traffic::TrafficSnapshot& snapshot) {
   selection.tick = snapshot.tick;
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego != nullptr) followEgo(*ego);
+  releaseSteered(snapshot, selection);
   updateHeld(snapshot, selection);
+  if (ego != nullptr) chooseSteered(snapshot, selection);
   if (ego != nullptr && max_cbv_ > 0 && selectionDue(snapshot.time)) select(snapshot, selection);
   for (const auto& [slot, held] : slots_) selection.assignments.push_back(held.assignment());
   std::sort(selection.released.begin(), selection.released.end(),
@@ -158,6 +160,63 @@ void CbvSelector::release(int slot, const char* reason, CbvSelection& selection)
   slots_.erase(held);
 }
 
+void CbvSelector::releaseSteered(const traffic::TrafficSnapshot& snapshot,
+                                 CbvSelection& selection) {
+  for (const traffic::SteeringChange& change : snapshot.steering) {
+    if (change.what != traffic::steered::kRelease && change.what != traffic::steered::kRemove)
+      continue;
+    const auto held = std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) {
+      return slot.second.vehicleId() == change.before;
+    });
+    if (held != slots_.end()) release(held->first, kSteered, selection);
+  }
+}
+
+void CbvSelector::chooseSteered(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection) {
+  refused_.clear();
+  for (const traffic::SteeringChange& change : snapshot.steering) {
+    if (change.what == traffic::steered::kChoose) choose(snapshot, change.after, selection);
+  }
+}
+
+/// Takes the vehicle, whatever its rank and whether it was a CBV before, in a free slot or that of
+/// the weakest CBV.
+void CbvSelector::choose(const traffic::TrafficSnapshot& snapshot, const std::string& vehicle_id,
+                         CbvSelection& selection) {
+  if (holds(vehicle_id)) return;
+  const bool was_cbv = never_again_.erase(vehicle_id) > 0;
+  Candidate candidate;
+  candidate.vehicle = snapshot.find(vehicle_id);
+  const char* reason = candidate.vehicle == nullptr ? kGone : examine(snapshot, candidate);
+  const int free = slotFor(candidate, snapshot.tick);
+  const int slot = free == kNoSlot ? weakestSlot(snapshot.tick) : free;
+  std::optional<HeldCbv> chosen;
+  if (reason == nullptr) reason = whyNot(snapshot, candidate, chosen, slot);
+  if (reason != nullptr) {
+    if (was_cbv) never_again_.insert(vehicle_id);
+    if (refused_.insert(vehicle_id).second)
+      selection.rejected.push_back({vehicle_id, reason, candidate.conflict.score});
+    return;
+  }
+  if (slots_.count(slot) != 0) release(slot, kSteered, selection);
+  slots_.emplace(slot, std::move(*chosen));
+}
+
+/// Why the candidate cannot have the slot; nullptr with `chosen` set where it can.
+const char* CbvSelector::whyNot(const traffic::TrafficSnapshot& snapshot,
+                                const Candidate& candidate, std::optional<HeldCbv>& chosen,
+                                int slot) const {
+  if (slot == kNoSlot) return kOutranked;
+  chosen = makeHeld(slot, candidate, snapshot.tick);
+  if (!chosen) return kNoWay;
+  return hasContactAhead(snapshot, candidate, *chosen) ? kContactAhead : nullptr;
+}
+
+bool CbvSelector::mayBeTaken(const std::string& vehicle_id) const {
+  const std::vector<std::string>& only = options_.only;
+  return only.empty() || std::find(only.begin(), only.end(), vehicle_id) != only.end();
+}
+
 void CbvSelector::releaseLost(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection) {
   constexpr double kTolerance = 1e-6;
   for (int slot = 0; slot < max_cbv_; ++slot) {
@@ -183,17 +242,9 @@ void CbvSelector::select(const traffic::TrafficSnapshot& snapshot, CbvSelection&
   for (const Candidate& candidate : rankedCandidates(snapshot, selection)) {
     const std::string& id = candidate.vehicle->id;
     const int slot = slotFor(candidate, snapshot.tick);
-    if (slot == kNoSlot) {
-      selection.rejected.push_back({id, kOutranked, candidate.conflict.score});
-      continue;
-    }
-    std::optional<HeldCbv> chosen = makeHeld(slot, candidate, snapshot.tick);
-    if (!chosen) {
-      selection.rejected.push_back({id, kNoWay, candidate.conflict.score});
-      continue;
-    }
-    if (hasContactAhead(snapshot, candidate, *chosen)) {
-      selection.rejected.push_back({id, kContactAhead, candidate.conflict.score});
+    std::optional<HeldCbv> chosen;
+    if (const char* reason = whyNot(snapshot, candidate, chosen, slot)) {
+      selection.rejected.push_back({id, reason, candidate.conflict.score});
       continue;
     }
     if (slots_.count(slot) != 0) release(slot, kOutranked, selection);
@@ -206,9 +257,10 @@ std::vector<CbvSelector::Candidate> CbvSelector::rankedCandidates(
   std::vector<Candidate> candidates;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role != traffic::VehicleRole::kBackground || holds(vehicle.id)) continue;
+    if (refused_.count(vehicle.id) != 0) continue;
     Candidate candidate;
     candidate.vehicle = &vehicle;
-    const char* reason = examine(snapshot, candidate);
+    const char* reason = mayBeTaken(vehicle.id) ? examine(snapshot, candidate) : kNotNamed;
     if (reason == nullptr) {
       candidates.push_back(candidate);
     } else {
@@ -283,15 +335,21 @@ int CbvSelector::slotFor(const Candidate& candidate, std::uint64_t tick) const {
     if (slots_.count(slot) == 0) return slot;
   }
   if (!reselects()) return kNoSlot;
+  const int weakest = weakestSlot(tick);
+  if (weakest == kNoSlot) return kNoSlot;
+  const double needed = slots_.at(weakest).presentScore() + options_.hysteresis;
+  return candidate.conflict.score > needed ? weakest : kNoSlot;
+}
+
+/// That of the CBV with the lowest present score that was not selected at this tick.
+int CbvSelector::weakestSlot(std::uint64_t tick) const {
   int weakest = kNoSlot;
   for (const auto& [slot, held] : slots_) {
     if (held.assignment().selected_tick == tick) continue;
     if (weakest == kNoSlot || held.presentScore() < slots_.at(weakest).presentScore())
       weakest = slot;
   }
-  if (weakest == kNoSlot) return kNoSlot;
-  const double needed = slots_.at(weakest).presentScore() + options_.hysteresis;
-  return candidate.conflict.score > needed ? weakest : kNoSlot;
+  return weakest;
 }
 
 /// The candidate with its conflict-aware route; nullopt when the graph finds no route to the

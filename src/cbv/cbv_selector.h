@@ -27,6 +27,8 @@ inline constexpr const char* kRouteEnd = "route_end";
 inline constexpr const char* kGone = "gone";
 /// Life cycle "reselect": no conflict for lost_conflict_time.
 inline constexpr const char* kConflictLost = "conflict_lost";
+/// Who steers the session released it, took it away, or chose another one for its slot.
+inline constexpr const char* kSteered = "steered";
 
 /// Arc length [m] reached on a path by a vehicle that was at `arc_length`: looks as far ahead as
 /// map::kRouteWindow, and along the whole rest of the path when the vehicle is more than `far_off`
@@ -90,7 +92,9 @@ class VehicleSelector {
 
 /// CBV identification (paper III-B): for every vehicle the best conflict point with the ego's
 /// remaining route by equal distance, equal arrival time and nearness; the best candidates fill the
-/// slots and keep them (RIFT's life cycle by default).
+/// slots and keep them (RIFT's life cycle by default). A vehicle that steering chooses
+/// (traffic::steered::kChoose) comes before them where it passes the gates; it is rejected with the
+/// reason where it does not.
 /// Not copyable; one per session; called once per tick in order: `update` at decision ticks,
 /// `observe` at all others.
 class CbvSelector : public VehicleSelector {
@@ -104,7 +108,7 @@ class CbvSelector : public VehicleSelector {
 
   /// A tick without decision: remembers contacts, so that a release names its reason.
   void observe(const traffic::TrafficSnapshot& snapshot) override;
-  /// A pure function of the snapshots seen so far.
+  /// A pure function of the snapshots seen so far, with the steering in them.
   CbvSelection update(const traffic::TrafficSnapshot& snapshot) override;
 
  private:
@@ -124,6 +128,14 @@ class CbvSelector : public VehicleSelector {
                        const HeldCbv& chosen) const;
   bool holds(const std::string& vehicle_id) const;
   void updateHeld(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
+  void releaseSteered(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
+  void chooseSteered(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
+  void choose(const traffic::TrafficSnapshot& snapshot, const std::string& vehicle_id,
+              CbvSelection& selection);
+  const char* whyNot(const traffic::TrafficSnapshot& snapshot, const Candidate& candidate,
+                     std::optional<HeldCbv>& chosen, int slot) const;
+  int weakestSlot(std::uint64_t tick) const;
+  bool mayBeTaken(const std::string& vehicle_id) const;
   void releaseLost(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
   void release(int slot, const char* reason, CbvSelection& selection);
   void select(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
@@ -142,6 +154,7 @@ class CbvSelector : public VehicleSelector {
   std::map<int, HeldCbv> slots_;
   std::set<std::string> never_again_;
   std::set<std::string> contacted_;  ///< between decisions
+  std::set<std::string> refused_;    ///< chosen by steering at this decision, and rejected
   EgoProgress ego_;
   bool seen_ego_ = false;
   double last_selection_ = -1.0;  ///< index of the last selection period

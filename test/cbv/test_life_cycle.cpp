@@ -60,6 +60,65 @@ TEST(LifeCycle, OfChallengingReselectsWhereTheScenarioDoesNotSay) {
   EXPECT_EQ(options.inMode("challenging").life_cycle, "rift");
 }
 
+traffic::TrafficSnapshot steered(traffic::TrafficSnapshot snapshot, const std::string& what,
+                                 const std::string& id) {
+  const bool ends = what != traffic::steered::kChoose;
+  snapshot.steering = {{"me", what, ends ? id : "", ends ? "" : id}};
+  return snapshot;
+}
+
+TEST(LifeCycle, AChosenVehicleTakesTheSlotOfTheWeakest) {
+  CrossingWorld world({}, 1);
+  world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("first", -20.0, 2.0)}));
+  const auto chosen = world.selector.update(steered(
+      crossingSnapshot(kFirst + 2, 70.0,
+                       {driven(fromSouth("first", -20.0, 2.0), 0), fromNorth("wanted", 30.0, 9.0)}),
+      "choose", "wanted"));
+  ASSERT_EQ(chosen.assignments.size(), 1u);
+  EXPECT_EQ(chosen.assignments[0].vehicle_id, "wanted");
+  ASSERT_EQ(chosen.released.size(), 1u);
+  EXPECT_EQ(chosen.released[0].vehicle_id, "first");
+  EXPECT_EQ(chosen.released[0].reason, kSteered);
+}
+
+TEST(LifeCycle, AChosenVehicleThatPassesNoGateIsRejectedOnce) {
+  CrossingWorld world({}, 1);
+  const auto selection = world.selector.update(
+      steered(crossingSnapshot(kFirst, 70.0, {fromSouth("far", -104.0, 9.0)}), "choose", "far"));
+  EXPECT_TRUE(selection.assignments.empty());
+  ASSERT_EQ(selection.rejected.size(), 1u);
+  EXPECT_EQ(selection.rejected[0].reason, kTooFar);
+  const auto gone =
+      world.selector.update(steered(crossingSnapshot(kFirst + 2, 70.0, {}), "choose", "nobody"));
+  EXPECT_EQ(reasonOf(gone, "nobody"), kGone);
+}
+
+TEST(LifeCycle, WhoWasReleasedBySteeringCanBeChosenAgain) {
+  CrossingWorld world({}, 1);
+  const auto car = fromSouth("car", -30.0, 9.0);
+  world.selector.update(crossingSnapshot(kFirst, 70.0, {car}));
+  const auto released = world.selector.update(
+      steered(crossingSnapshot(kFirst + 2, 70.0, {driven(car, 0)}), "release", "car"));
+  EXPECT_TRUE(released.assignments.empty());
+  ASSERT_EQ(released.released.size(), 1u);
+  EXPECT_EQ(released.released[0].reason, kSteered);
+  EXPECT_TRUE(world.selector.update(crossingSnapshot(kFirst + 4, 70.0, {car})).assignments.empty());
+  const auto again =
+      world.selector.update(steered(crossingSnapshot(kFirst + 6, 70.0, {car}), "choose", "car"));
+  EXPECT_EQ(again.assignments.size(), 1u);
+}
+
+TEST(LifeCycle, OnlyTheNamedBecomeCbvs) {
+  CbvOptions options;
+  options.only = {"named"};
+  CrossingWorld world(options, 2);
+  const auto selection = world.selector.update(crossingSnapshot(
+      kFirst, 70.0, {fromSouth("other", -30.0, 9.0), fromNorth("named", 30.0, 9.0)}));
+  ASSERT_EQ(selection.assignments.size(), 1u);
+  EXPECT_EQ(selection.assignments[0].vehicle_id, "named");
+  EXPECT_EQ(reasonOf(selection, "other"), kNotNamed);
+}
+
 TEST(LifeCycle, RiftNeverRanksAgain) {
   CrossingWorld world({}, 1);
   world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("weak", -20.0, 2.0)}));

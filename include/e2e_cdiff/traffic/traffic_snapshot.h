@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/traffic/steering_change.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::traffic {
@@ -63,6 +64,7 @@ struct TrafficSnapshot {
       removed;  ///< ids that left the simulation since the last tick (contact or end of route)
   SessionStatus status = SessionStatus::kRunning;  ///< of the session, after this tick's events
   std::vector<Fault> faults;                       ///< recorded at this tick
+  std::vector<SteeringChange> steering;            ///< in force from this tick on, in order
 
   /// The vehicle with this id, or nullptr.
   const Vehicle* find(const std::string& id) const;
