@@ -101,6 +101,7 @@ session::SessionRequest sessionRequest(const Parameters& parameters) {
   request.ego_planner = parameters.text("ego_planner");
   request.cbv_planner = parameters.text("cbv_planner");
   request.seed = parameters.text("seed");
+  request.steering = parameters.text("steering");
   request.video = parameters.flag("video", false);
   request.set = core::splitText(parameters.text("set"), ' ');
   request.set_source = "parameter ~set";

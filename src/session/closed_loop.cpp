@@ -35,18 +35,6 @@ bool answersAll(const std::vector<PlannedAction>& actions, const std::vector<Pla
   return true;
 }
 
-/// Sleeps until the wall clock has come as far as the simulation asks for, or a stop is asked for.
-void pace(Clock::time_point begin, double simulated_seconds, double at_most,
-          const std::atomic<bool>& stop) {
-  constexpr auto kSlice = std::chrono::milliseconds(50);
-  if (at_most <= 0.0) return;
-  const std::chrono::duration<double> due(simulated_seconds / at_most);
-  const Clock::time_point wake = begin + std::chrono::duration_cast<Clock::duration>(due);
-  while (!stop && Clock::now() < wake) {
-    std::this_thread::sleep_until(std::min(wake, Clock::now() + kSlice));
-  }
-}
-
 }  // namespace
 
 void requireLockstep(const ScenarioOptions& options) {
@@ -58,15 +46,30 @@ void requireLockstep(const ScenarioOptions& options) {
 }
 
 std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
-                                   const cbv::CbvSelection& selection, const SessionSetup& setup) {
+                                   const cbv::CbvSelection& selection, const SessionSetup& setup,
+                                   std::optional<double> target_speed) {
   std::vector<PlanningTask> tasks;
   for (const cbv::CbvAssignment& assignment : selection.assignments) {
     const traffic::Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
     if (vehicle == nullptr) continue;
     tasks.push_back({assignment.slot, vehicle, &assignment.conflict_aware_route,
-                     setup.cbvTargetSpeed(vehicle->id)});
+                     target_speed ? *target_speed : setup.cbvTargetSpeed(vehicle->id)});
   }
   return tasks;
+}
+
+std::string steerPlanner(const std::vector<traffic::SteeringChange>& changes, SteeredCbvs& cbvs,
+                         planning::Planner& planner) {
+  bool changed = false;
+  for (const traffic::SteeringChange& change : changes) changed = cbvs.follow(change) || changed;
+  if (!changed) return {};
+  try {
+    planner.setGuidance(cbvs.guidance());
+    return {};
+  } catch (const core::InputError& error) {
+    return "the guidance that was asked for cannot be followed: " + std::string(error.what()) +
+           "; the one before is kept";
+  }
 }
 
 std::vector<PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
@@ -111,7 +114,7 @@ LoopParts makeParts(const SessionSetup& setup) {
 ClosedLoop::ClosedLoop(const SessionSetup& setup) : ClosedLoop(setup, makeParts(setup)) {}
 
 ClosedLoop::ClosedLoop(const SessionSetup& setup, LoopParts parts)
-    : setup_(setup), parts_(std::move(parts)) {
+    : setup_(setup), parts_(std::move(parts)), steered_(setup.options()) {
   requireLockstep(setup.options());
   if (parts_.world == nullptr) parts_.world = std::make_unique<World>(setup);
 }
@@ -161,21 +164,37 @@ void ClosedLoop::renderWishes(Decision& decision) {
   }
 }
 
+void ClosedLoop::steer(const std::vector<traffic::SteeringChange>& changes) {
+  const std::string unfollowed = steerPlanner(changes, steered_, *parts_.cbv_planner.planner);
+  if (!unfollowed.empty())
+    parts_.world->recordFault("cbv:" + setup_.options().cbv_planner, unfollowed);
+}
+
 ClosedLoop::Decision ClosedLoop::decide() {
   const traffic::TrafficSnapshot& snapshot = world().snapshot();
   const ScenarioOptions& options = setup_.options();
   Decision decision;
+  if (!snapshot.steering.empty()) steer(snapshot.steering);
   decision.selection = parts_.selector->update(snapshot);
   ask(parts_.ego_planner, "ego:" + options.ego_planner,
       egoTasks(snapshot, setup_.egoRoute(), options.target_speed), decision);
   ask(parts_.cbv_planner, "cbv:" + options.cbv_planner,
-      cbvTasks(snapshot, decision.selection, setup_), decision);
+      cbvTasks(snapshot, decision.selection, setup_, steered_.targetSpeed()), decision);
   if (parts_.image_wish) renderWishes(decision);
   return decision;
 }
 
+/// Waits until the next tick may begin; false when the session is to end before it.
+bool ClosedLoop::holdBack(const std::atomic<bool>& stop) {
+  while (!stop && !control().quitting()) {
+    const auto wait = control().holdBack(world().snapshot().time, Clock::now());
+    if (wait == Clock::duration::zero()) return true;
+    std::this_thread::sleep_for(wait);
+  }
+  return false;
+}
+
 SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
-  const Clock::time_point begin = Clock::now();
   while (true) {
     const traffic::TrafficSnapshot& snapshot = parts_.world->snapshot();
     TickRecord record;
@@ -198,11 +217,10 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
     }
     for (SessionObserver* observer : observers_) observer->observe(record);
     if (snapshot.status != SessionStatus::kRunning) return snapshot.status;
-    if (stop) {
+    if (!holdBack(stop)) {
       parts_.world->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
       continue;
     }
-    pace(begin, snapshot.time, setup_.options().at_most, stop);
     parts_.world->advance(record.selection, decision.actions);
   }
 }

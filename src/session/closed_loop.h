@@ -21,10 +21,16 @@ namespace cdiff::session {
 void requireLockstep(const ScenarioOptions& options);
 
 /// Tasks of the CBV planner at a decision: one per assigned slot whose vehicle is in the snapshot,
-/// in slot order, each with the target speed that `setup` has for the vehicle.
+/// in slot order, each with `target_speed` [m/s], or where there is none with the one that `setup`
+/// has for the vehicle.
 std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
                                              const cbv::CbvSelection& selection,
-                                             const SessionSetup& setup);
+                                             const SessionSetup& setup,
+                                             std::optional<double> target_speed = {});
+/// Lets `cbvs` follow the changes of a snapshot, and the planner of the CBVs the guidance that they
+/// make. Returns why it follows the guidance before on; empty when it does not.
+std::string steerPlanner(const std::vector<traffic::SteeringChange>& changes, SteeredCbvs& cbvs,
+                         planning::Planner& planner);
 /// Task of the ego planner; empty when the ego is gone.
 std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
                                              const map::Route& route, double target_speed);
@@ -77,10 +83,14 @@ class ClosedLoop {
   /// Runs to the end; `stop` (from a signal handler) ends the session as interrupted.
   traffic::SessionStatus run(const std::atomic<bool>& stop);
   const World& world() const { return *parts_.world; }
+  /// What steers the session, from any thread.
+  SessionControl& control() { return parts_.world->control(); }
 
  private:
   struct Decision;
+  bool holdBack(const std::atomic<bool>& stop);
   Decision decide();
+  void steer(const std::vector<traffic::SteeringChange>& changes);
   void ask(const LoopPlanner& asked, const std::string& name,
            std::vector<planning::PlanningTask> tasks, Decision& decision);
   void render(const traffic::Vehicle& vehicle, int slot, Decision& decision);
@@ -88,6 +98,7 @@ class ClosedLoop {
 
   const SessionSetup& setup_;
   LoopParts parts_;
+  SteeredCbvs steered_;
   std::vector<SessionObserver*> observers_;
 };
 

@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/planner_by_slot.h"
+#include "session/steered_cbvs.h"
 #include "session/unfit_combination.h"
 #include "simulation/sumo_input_rules.h"
 
@@ -153,6 +154,9 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"metrics", "", "What the session is measured against."}, metrics);
   visitor.group({"verdict", "", "Rules by which the session is judged."}, verdict);
   visitor.group({"report", "", "What report.html holds."}, report);
+  visitor.groups(
+      {"steering", "", "What changes while the session runs, as in [{at: 12, profile: none}]."},
+      steering);
   visitor.flag({"video", "", "Also write session.mp4: front view beside the picture from above."},
                video);
   describeTime(visitor);
@@ -250,6 +254,7 @@ void ScenarioOptions::validate() const {
   }
   if (file) checkDemandFile(demand);
   checkStatuses(verdict.statuses);
+  validateSteering(*this);
 }
 
 void ScenarioOptions::validateCameras() const {

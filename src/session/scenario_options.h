@@ -15,6 +15,7 @@
 #include "planners/registry.h"
 #include "rendering/range_sensor.h"
 #include "session/protocol.h"
+#include "session/steering.h"
 #include "session/target_speed.h"
 #include "simulation/demand_generator.h"
 #include "simulation/sumo_simulator.h"
@@ -100,13 +101,14 @@ struct ScenarioOptions {
   metrics::MetricsOptions metrics;
   VerdictOptions verdict;
   ReportOptions report;
-  bool video = false;                ///< also write session.mp4
-  double target_speed = 8.0;         ///< v* [m/s], capped by the lane's limit
-  CbvSpeedOptions cbv_target_speed;  ///< v* of CBVs where each has its own
-  double simulation_step = 0.05;     ///< [s]
-  double decision_period = 0.1;      ///< [s], a multiple of simulation_step
-  double real_time_factor = 0.0;     ///< pace of nodes that the wall clock rules; 0: lockstep
-  double at_most = 0.0;              ///< times real time, in lockstep; 0: as fast as possible
+  std::vector<SteeringEntry> steering;  ///< what changes while the session runs
+  bool video = false;                   ///< also write session.mp4
+  double target_speed = 8.0;            ///< v* [m/s], capped by the lane's limit
+  CbvSpeedOptions cbv_target_speed;     ///< v* of CBVs where each has its own
+  double simulation_step = 0.05;        ///< [s]
+  double decision_period = 0.1;         ///< [s], a multiple of simulation_step
+  double real_time_factor = 0.0;        ///< pace of nodes that the wall clock rules; 0: lockstep
+  double at_most = 0.0;                 ///< times real time, in lockstep; 0: as fast as possible
   std::int64_t seed = 1;
 
   void describe(core::OptionsVisitor& visitor);

@@ -76,6 +76,7 @@ struct SessionRequest {
   std::string ego_planner;
   std::string cbv_planner;
   std::string seed;
+  std::string steering;              ///< see readSteering; replaces the scenario's
   bool video = false;                ///< session.mp4 too
   std::vector<std::string> set;      ///< "key=value" each, applied last
   std::string set_source = "--set";  ///< how the user knows `set`, for errors

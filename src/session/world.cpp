@@ -18,6 +18,8 @@ namespace {
 using simulation::SimulatedVehicle;
 using traffic::Vehicle;
 
+constexpr const char* kSteeringFault = "steering";
+
 /// Where a vehicle that was just added will appear.
 Vehicle placed(const map::RoadNetwork& network, const simulation::DemandVehicle& added) {
   const std::vector<map::LaneIndex> lanes = network.lanesOfEdge(added.edges.front());
@@ -126,6 +128,7 @@ World::World(const SessionSetup& setup) : World(setup, setup.makeSimulator()) {}
 
 World::World(const SessionSetup& setup, std::unique_ptr<simulation::TrafficSimulator> simulator)
     : setup_(setup),
+      control_(setup),
       simulator_(std::move(simulator)),
       background_(setup, *simulator_),
       driven_(setup.options().vehicle),
@@ -133,6 +136,7 @@ World::World(const SessionSetup& setup, std::unique_ptr<simulation::TrafficSimul
   background_.warmUp();
   placeEgo();
   takeSnapshot();
+  showSteering(changesAt(0));
 }
 
 void World::placeEgo() {
@@ -158,10 +162,12 @@ void World::end(SessionStatus status, const traffic::Fault& fault) {
   snapshot_.decision_tick = false;
   snapshot_.contacts.clear();
   snapshot_.removed.clear();
+  snapshot_.steering.clear();
   snapshot_.status = status;
   snapshot_.faults = std::move(pending_faults_);
   snapshot_.faults.push_back(fault);
   pending_faults_.clear();
+  control_.end();
 }
 
 void World::advance(const cbv::CbvSelection* selection,
@@ -178,13 +184,76 @@ void World::advance(const cbv::CbvSelection* selection,
     driven_.move(step);
     const auto ticks_per_second = static_cast<std::uint64_t>(std::llround(1.0 / step));
     if (snapshot_.tick % ticks_per_second == 0) background_.keepDensity(snapshot_.ego(), driven_);
+    const std::vector<traffic::SteeringChange> steering = steer(snapshot_.tick + 1);
     stepSimulator();
     takeSnapshot();
+    showSteering(steering);
   } catch (const core::InputError& error) {
     end(SessionStatus::kError, {snapshot_.tick, traffic::kInputFault, error.what()});
   } catch (const core::Error& error) {
     end(SessionStatus::kError, {snapshot_.tick, "simulator", error.what()});
   }
+}
+
+VehicleRoles World::roles() const {
+  VehicleRoles roles;
+  for (const Vehicle& vehicle : snapshot_.vehicles) roles.emplace(vehicle.id, vehicle.role);
+  return roles;
+}
+
+/// What changes at a tick, given the vehicles of the snapshot that stands.
+std::vector<traffic::SteeringChange> World::changesAt(std::uint64_t tick) {
+  if (tick % setup_.ticksPerDecision() != 0) return {};
+  std::vector<std::string> refused;
+  const double time = static_cast<double>(tick) * setup_.options().simulation_step;
+  std::vector<traffic::SteeringChange> changes = control_.take(time, roles(), refused);
+  for (const std::string& text : refused) recordFault(kSteeringFault, text);
+  return changes;
+}
+
+/// Puts what changes at the coming tick into the traffic before it; returns all that changes.
+std::vector<traffic::SteeringChange> World::steer(std::uint64_t tick) {
+  std::vector<traffic::SteeringChange> changes = changesAt(tick);
+  for (const traffic::SteeringChange& change : changes) {
+    if (change.what == steered::kPlace) placeVehicle(placedVehicle(change.after));
+    if (change.what == steered::kRemove) removeContacted({change.before});
+  }
+  return changes;
+}
+
+/// Drives on along the lane and straight on beyond it.
+void World::placeVehicle(const PlacedVehicle& vehicle) {
+  constexpr double kRouteLength = 1000.0;  // [m]
+  const map::RoadNetwork& network = setup_.network();
+  const map::LaneIndex index = network.findLane(vehicle.lane);
+  const map::Lane& lane = network.lane(index);
+  const double length = lane.centerline.length();
+  const map::Route route = setup_.graph().extended(
+      setup_.graph().toRoute({{index}, length - vehicle.position}, vehicle.position, length),
+      kRouteLength);
+  std::vector<std::string> edges;
+  for (const map::LaneIndex on_route : route.lanes()) {
+    const map::Lane& next = network.lane(on_route);
+    if (next.internal || (!edges.empty() && edges.back() == next.edge_id)) continue;
+    edges.push_back(next.edge_id);
+  }
+  const traffic::VehicleDimensions dimensions;
+  simulator_->addBackground(vehicle.id, edges, vehicle.position + 0.5 * dimensions.length,
+                            lane.index, vehicle.speed, dimensions);
+}
+
+/// In the snapshot that was just taken; a vehicle that found no room was not placed.
+void World::showSteering(const std::vector<traffic::SteeringChange>& changes) {
+  for (const traffic::SteeringChange& change : changes) {
+    const std::string id = change.what == steered::kPlace ? placedVehicle(change.after).id : "";
+    if (id.empty() || snapshot_.find(id) != nullptr) {
+      snapshot_.steering.push_back(change);
+    } else {
+      recordFault(kSteeringFault, "vehicle '" + id + "' found no room where the " + change.by +
+                                      " places it; nothing was changed");
+    }
+  }
+  if (snapshot_.decision_tick) control_.note(roles());
 }
 
 void World::removeContacted(const std::vector<std::string>& removed) {
@@ -247,6 +316,7 @@ void World::collectVehicles(const std::vector<Vehicle>& before) {
 void World::takeSnapshot() {
   const std::vector<Vehicle> before = std::move(snapshot_.vehicles);
   snapshot_.removed.clear();
+  snapshot_.steering.clear();
   snapshot_.tick += before.empty() ? 0 : 1;
   snapshot_.time = static_cast<double>(snapshot_.tick) * setup_.options().simulation_step;
   collectVehicles(before);
@@ -259,6 +329,7 @@ void World::takeSnapshot() {
   snapshot_.decision_tick = running && snapshot_.tick % setup_.ticksPerDecision() == 0;
   snapshot_.faults = std::move(pending_faults_);
   pending_faults_.clear();
+  if (!running) control_.end();
 }
 
 }  // namespace cdiff::session

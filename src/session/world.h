@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "session/driven_vehicles.h"
+#include "session/session_control.h"
 #include "session/session_setup.h"
 #include "simulation/demand_generator.h"
 
@@ -49,12 +50,16 @@ class World {
  public:
   /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterward `snapshot()`
   /// is tick 0. `setup` must outlive the world.
+  /// Throws InputError for steering that names a lane which is not there.
   explicit World(const SessionSetup& setup);
   /// The same in another simulator, which knows the setup's network.
   World(const SessionSetup& setup, std::unique_ptr<simulation::TrafficSimulator> simulator);
 
   /// The world at the current tick.
   const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
+  /// What steers the session. What is asked for there enters the world at the next decision, and
+  /// its snapshot says so; what cannot be by then is a recorded fault.
+  SessionControl& control() { return control_; }
 
   /// Goes to the next tick. At a decision tick give the selection and the actions decided; between
   /// them nullptr and {}: the last actions are held. Invalid actions become the fail-safe action,
@@ -89,6 +94,11 @@ class World {
 
  private:
   void placeEgo();
+  VehicleRoles roles() const;
+  std::vector<traffic::SteeringChange> changesAt(std::uint64_t tick);
+  std::vector<traffic::SteeringChange> steer(std::uint64_t tick);
+  void placeVehicle(const PlacedVehicle& vehicle);
+  void showSteering(const std::vector<traffic::SteeringChange>& changes);
   void removeContacted(const std::vector<std::string>& removed);
   void applySelection(const cbv::CbvSelection& selection, const std::vector<std::string>& removed);
   void takeOver(const cbv::CbvAssignment& assignment);
@@ -98,6 +108,7 @@ class World {
   void takeSnapshot();
 
   const SessionSetup& setup_;
+  SessionControl control_;
   std::unique_ptr<simulation::TrafficSimulator> simulator_;
   BackgroundTraffic background_;
   DrivenVehicles driven_;

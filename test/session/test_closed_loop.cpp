@@ -151,6 +151,22 @@ TEST(ClosedLoop, AtMostSleepsAndChangesNothing) {
   EXPECT_GE(taken.count(), 0.975);  // the last tick is published at 1.95 s / 2
 }
 
+// 8 s of a crossing, at which a car is placed 20 m down the first lane of the ego's route at 3 s.
+TEST(ClosedLoop, SteeringChangesTheCourseTheSameWayEachTime) {
+  const ScenarioOptions free = scenarioWith("crossing_left_turn", {"protocol.time_limit=8"});
+  const SessionSetup setup(free);
+  const map::Lane& lane = setup.network().lane(setup.egoRoute().lanes().front());
+  const std::string place = "steering=[{at: 3, place: probe, lane: " + lane.id +
+                            ", position: 20, speed: 2}, {at: 4, remove: probe}]";
+  const std::vector<std::string> set = {"protocol.time_limit=8", place};
+  const Course one = runScenario(scenarioWith("crossing_left_turn", set));
+  const Course two = runScenario(scenarioWith("crossing_left_turn", set));
+  EXPECT_EQ(one.hash(), two.hash());
+  EXPECT_NE(one.hash(), runScenario(free).hash());
+  EXPECT_TRUE(one.faults_.empty()) << one.faults_.front().text;
+  EXPECT_EQ(one.last_.find("probe"), nullptr);
+}
+
 TEST(ClosedLoop, RealTimeFactorNeedsTheNodeGraph) {
   const SessionSetup paced(scenarioWith("crossing_left_turn", {"real_time_factor=1"}));
   try {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "session/closed_loop.h"
 #include "session/scripted_session.h"
 
@@ -89,9 +90,11 @@ class Cycle {
     } stop;
     return run(stop, stop.stop);
   }
-  Record run(SessionObserver& observer, const std::atomic<bool>& stop) {
+  Record run(SessionObserver& observer, const std::atomic<bool>& stop,
+             const std::function<void(ClosedLoop&)>& before = {}) {
     parts.world = scripted_.makeWorld();
     ClosedLoop loop(scripted_.setup(), std::move(parts));
+    if (before) before(loop);
     Record record;
     loop.addObserver(record);
     loop.addObserver(observer);
@@ -195,6 +198,110 @@ TEST(DecisionCycle, APlannerIsGivenAllImagesOfItsRigInOrder) {
   const Record record = cycle.run();
   EXPECT_EQ(seen, 2);
   EXPECT_EQ(record.images[0], (std::vector<int>{-1, -1, -1, -1, -1, -1, 0}));
+}
+
+/// Notes which guidance it follows at each decision, and for which target speed it is asked.
+class Steered : public planning::Planner {
+ public:
+  struct Seen {
+    std::vector<double> weights;  ///< of the objective speed; -1 before any is set
+    std::vector<double> target_speeds;
+  };
+  explicit Steered(Seen& seen) : seen_(seen) {}
+  void setGuidance(const guidance::GuidanceOptions& guidance) override {
+    guidance::GuidanceOptions copy = guidance;
+    weight_ = copy.find("speed").weight;
+    if (weight_ > 100.0) throw core::InputError("too much");
+  }
+  std::vector<PlannedAction> plan(const traffic::TrafficSnapshot&,
+                                  const std::vector<PlanningTask>& tasks) override {
+    seen_.weights.push_back(weight_);
+    seen_.target_speeds.push_back(tasks[0].target_speed);
+    return {{tasks[0].slot, tasks[0].vehicle->id, {0.0, 0.0, 0.25}, {}}};
+  }
+
+ private:
+  Seen& seen_;
+  double weight_ = -1.0;
+};
+
+/// Steers as a scenario does: guidance and target speed from 0.1 s (tick 2) on.
+class SteeredCycle {
+ public:
+  explicit SteeredCycle(double weight) : weight_(weight) {}
+  Record run() {
+    test::ScriptedSession scripted;
+    scripted.simulator().place("car", {200.0, 0.0, 0.0, 5.0});
+    ScenarioOptions options = scripted.setup().options();
+    options.cbv_planner = "diffusion";
+    options.protocol.time_limit = 0.3;
+    options.steering.resize(1);
+    options.steering[0].at = 0.1;
+    options.steering[0].objective = "speed";
+    options.steering[0].weight = weight_;
+    options.steering[0].target_speed = 11.0;
+    const SessionSetup setup(options);
+    LoopParts parts;
+    parts.selector = std::make_unique<Always>(scripted.selectionOf("car"));
+    parts.ego_planner = {std::make_unique<Braking>()};
+    parts.cbv_planner = {std::make_unique<Steered>(seen)};
+    auto simulator = std::make_unique<test::ScriptedSimulator>();
+    simulator->place("car", {200.0, 0.0, 0.0, 5.0});
+    parts.world = std::make_unique<World>(setup, std::move(simulator));
+    ClosedLoop loop(setup, std::move(parts));
+    Record record;
+    loop.addObserver(record);
+    loop.run(std::atomic<bool>(false));
+    return record;
+  }
+  Steered::Seen seen;
+
+ private:
+  double weight_;
+};
+
+TEST(DecisionCycle, SteeringIsFollowedInTheDecisionOfItsSnapshot) {
+  SteeredCycle cycle(3.0);
+  EXPECT_EQ(cycle.run().faults, std::vector<std::string>{});
+  EXPECT_EQ(cycle.seen.weights, (std::vector<double>{-1.0, 3.0, 3.0}));
+  EXPECT_EQ(cycle.seen.target_speeds, (std::vector<double>{8.0, 11.0, 11.0}));
+}
+
+TEST(DecisionCycle, GuidanceThatAPlannerCannotFollowIsAFault) {
+  SteeredCycle cycle(200.0);
+  EXPECT_EQ(cycle.run().faults, std::vector<std::string>{"cbv:diffusion"});
+}
+
+TEST(DecisionCycle, APausedSessionGoesOnWhenItIsResumed) {
+  Cycle cycle;
+  class PauseAtTick1 : public SessionObserver {
+   public:
+    ~PauseAtTick1() override {
+      if (thread_.joinable()) thread_.join();
+    }
+    void observe(const TickRecord& record) override {
+      stop = record.snapshot->tick == 3;
+      if (record.snapshot->tick != 1) return;
+      control->pause();
+      thread_ = std::thread([this] {
+        control->step(1);
+        stepped = control->awaitSteps(60.0);
+        control->resume();
+      });
+    }
+    SessionControl* control = nullptr;
+    std::atomic<bool> stop{false};
+    std::atomic<bool> stepped{false};
+
+   private:
+    std::thread thread_;
+  } steering;
+  EXPECT_EQ(cycle
+                .run(steering, steering.stop,
+                     [&](ClosedLoop& loop) { steering.control = &loop.control(); })
+                .actions.size(),
+            2U);
+  EXPECT_TRUE(steering.stepped);
 }
 
 // Tick 2, at 0.1 s, is left when 0.1 s / 0.25 have passed.

@@ -214,5 +214,55 @@ TEST(World, WhoCouldNotAvoidTheEgoIsRemovedBeforeItStarts) {
   EXPECT_NE(world->snapshot().find("below"), nullptr);
 }
 
+TEST(World, WhatIsAskedForComesWithTheNextDecisionAndNoEarlier) {
+  ScriptedSession scripted;
+  scripted.simulator().place("car", {kEgoStart + 50.0});
+  const auto world = scripted.makeWorld();
+  world->control().ask({"me", "target_speed", "9"});
+  world->advance(nullptr, {});
+  EXPECT_TRUE(world->snapshot().steering.empty()) << "tick 1 is no decision";
+  world->advance(nullptr, {});
+  ASSERT_EQ(world->snapshot().steering.size(), 1U);
+  EXPECT_EQ(world->snapshot().steering[0].after, "9");
+  EXPECT_EQ(world->snapshot().steering[0].by, "me");
+  world->advance(nullptr, {});
+  EXPECT_TRUE(world->snapshot().steering.empty());
+}
+
+TEST(World, AVehicleIsTakenAwayWhoeverDrivesIt) {
+  ScriptedSession scripted;
+  scripted.simulator().place("car", {kEgoStart + 50.0});
+  scripted.simulator().place("other", {kEgoStart + 150.0});
+  const auto world = scripted.makeWorld();
+  const auto selection = scripted.selectionOf("car");
+  world->advance(&selection, {of("car", {0.0, 0.0, 1.0}, 0)});
+  world->control().ask({"me", "remove", "car"});
+  world->control().ask({"me", "remove", "other"});
+  world->advance(nullptr, {});
+  EXPECT_EQ(world->snapshot().vehicles.size(), 1U);
+  EXPECT_EQ(world->snapshot().removed, (Texts{"car", "other"}));
+  EXPECT_EQ(world->snapshot().steering.size(), 2U);
+}
+
+TEST(World, AVehicleThatFindsNoRoomIsAFaultAndNoChange) {
+  ScriptedSession scripted;  // whose simulator takes no vehicle
+  const auto world = scripted.makeWorld();
+  world->control().ask({"me", "place", "probe road_0 300 5"});
+  world->advance(nullptr, {});
+  world->advance(nullptr, {});
+  EXPECT_TRUE(world->snapshot().steering.empty());
+  world->advance(nullptr, {});
+  ASSERT_EQ(world->snapshot().faults.size(), 1U);
+  EXPECT_EQ(world->snapshot().faults[0].source, "steering");
+}
+
+TEST(World, ASessionThatEndedIsOverForWhoSteers) {
+  ScriptedSession scripted;
+  const auto world = scripted.makeWorld();
+  EXPECT_EQ(world->control().state(), SessionControl::State::kPlaying);
+  world->end(traffic::SessionStatus::kInterrupted, {0, "user", "interrupted"});
+  EXPECT_EQ(world->control().state(), SessionControl::State::kOver);
+}
+
 }  // namespace
 }  // namespace cdiff::session

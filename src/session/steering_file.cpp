@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "session/steering_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "session/scenario_options.h"
+
+namespace cdiff::session {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+using nlohmann::json;
+
+constexpr const char* kSummary = "summary.json";
+
+traffic::SteeringChange changeOf(const json& entry) {
+  return {entry.at("by"), entry.at("what"), entry.at("before"), entry.at("after")};
+}
+
+std::vector<SteeringEntry> recordedSteering(const fs::path& summary) {
+  const std::string place = "'" + summary.string() + "'";
+  try {
+    const json steering = json::parse(core::readFile(summary, "summary")).at("steering");
+    if (steering.at("paced_by_wall_clock").get<bool>()) {
+      throw InputError(place +
+                       ": the wall clock paced this session (real_time_factor), so that its "
+                       "steering cannot be repeated; expected a session in lockstep");
+    }
+    std::vector<SteeringEntry> entries;
+    for (const json& change : steering.at("changes"))
+      entries.push_back(entryOf(changeOf(change), change.at("seconds").get<double>()));
+    return entries;
+  } catch (const json::exception& error) {
+    throw InputError(place + ": no steering can be read from it: " + error.what() +
+                     "; expected the summary.json of a session of this version");
+  }
+}
+
+/// The resolved scenario in a session.yaml, whose last group it is.
+std::string scenarioText(const fs::path& file) {
+  const std::string text = core::readFile(file, "session record", core::kLargestOptionsFile) + "\n";
+  const std::string head = "\nscenario:\n";
+  const std::size_t found = text.find(head);
+  if (found == std::string::npos)
+    throw InputError("'" + file.string() + "': expected the group 'scenario' of a session record");
+  std::string scenario;
+  for (std::size_t begin = found + head.size(); begin + 2 < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    if (end == std::string::npos || text.compare(begin, 2, "  ") != 0) break;
+    scenario += text.substr(begin + 2, end - begin - 1);
+    begin = end + 1;
+  }
+  return scenario;
+}
+
+}  // namespace
+
+std::vector<SteeringEntry> readSteering(const fs::path& source) {
+  if (core::isFolder(source)) return recordedSteering(source / kSummary);
+  if (source.extension() == ".json") return recordedSteering(source);
+  const std::vector<SteeringEntry> entries = loadScenario(source.string()).steering;
+  if (!entries.empty()) return entries;
+  throw InputError("'" + source.string() +
+                   "': it lists no steering; expected a scenario file with the key 'steering', a "
+                   "result folder, or its summary.json");
+}
+
+std::string steeredScenario(const fs::path& result) {
+  const std::vector<SteeringEntry> entries = recordedSteering(result / kSummary);
+  if (entries.empty()) throw InputError("'" + result.string() + "': nobody steered this session");
+  const fs::path file = result / "session.yaml";
+  ScenarioOptions options;
+  core::loadOptions({file.string(), scenarioText(file)}, options);
+  options.steering.clear();
+  options.name += "_steered";
+  std::string text = core::dumpOptions(options);
+  const std::string none = "\nsteering: []\n";
+  std::string list = "\nsteering:\n";
+  for (const SteeringEntry& entry : entries) list += "  - " + flowText(entry) + "\n";
+  return text.replace(text.find(none), none.size(), list);
+}
+
+}  // namespace cdiff::session

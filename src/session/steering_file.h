@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "session/steering.h"
+
+namespace cdiff::session {
+
+/// The steering that a session recorded or a scenario lists: of a result folder, its summary.json,
+/// or a scenario file. Throws InputError naming the file for one that holds none, and for the
+/// record of a session that the wall clock paced (real_time_factor), which cannot be repeated.
+std::vector<SteeringEntry> readSteering(const std::filesystem::path& source);
+
+/// The scenario that repeats the session of a result folder with what was steered in it: the
+/// resolved scenario with the list `steering`, an entry a line, as YAML. Throws InputError as
+/// readSteering, and for a folder without session.yaml.
+std::string steeredScenario(const std::filesystem::path& result);
+
+}  // namespace cdiff::session
