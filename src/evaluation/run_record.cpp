@@ -105,6 +105,8 @@ const std::vector<std::string>& measureNames() {
 SummaryFacts readSummary(const std::string& text, const std::string& source) {
   try {
     const json summary = json::parse(text);
+    if (summary.value(json::json_pointer("/steering/by_hand"), false))
+      throw core::InputError("'" + source + "': the session was steered by hand");
     SummaryFacts facts;
     facts.status = summary.at("status");
     facts.fault = lastFault(summary);

@@ -35,7 +35,8 @@ struct SummaryFacts {
   Measures measures;
 };
 
-/// Throws InputError naming `source` for a text that is not a summary.
+/// Throws InputError naming `source` for a text that is not a summary, and for that of a session
+/// that was steered by hand, which no table may hold.
 SummaryFacts readSummary(const std::string& text, const std::string& source);
 
 /// What happened to one planned run: record.json in its folder, written whole before the batch

@@ -211,6 +211,7 @@ std::vector<PageSection> sections(const record::SessionResult& result, const Map
           {"Critical background vehicles", selectionTable(result)},
           {"Why others were no CBVs", rejectionTable(result.cbv)},
           {"Contacts", contactTable(result) + whatIf({})},
+          {"Steering", steeringTable(result)},
           {"Planner latency", latencyTable(result.latencies)},
           {"Late answers", lateTable(result.late)},
           {"Faults", faultTable(result.faults)},

@@ -264,6 +264,19 @@ Markup lateTable(const std::map<std::string, record::LateCounts>& late) {
   return table.html();
 }
 
+Markup steeringTable(const record::SessionResult& result) {
+  if (result.steering.records().empty()) return pageNote("Nobody steered the session.");
+  HtmlTable table({"#Tick", "#Time [s]", "By", "What", "Before", "After", "Note"});
+  const double step = result.setup.options().simulation_step;
+  for (const session::SteeringRecord& record : result.steering.records()) {
+    const auto& [by, what, before, after] = record.change;
+    table.row({std::to_string(record.tick), fixed(static_cast<double>(record.tick) * step, 2), by,
+               what, before, after,
+               record.refused.empty() ? "" : "refused: " + record::rejectionText(record.refused)});
+  }
+  return table.html();
+}
+
 Markup faultTable(const std::vector<traffic::Fault>& all) {
   const std::vector<record::RepeatedFault> faults = record::repeatedFaults(all);
   if (faults.empty()) return pageNote("None.");

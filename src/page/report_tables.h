@@ -29,6 +29,7 @@ core::Markup rejectionTable(const record::CbvLog& cbv);
 core::Markup contactTable(const record::SessionResult& result);
 core::Markup lateTable(const std::map<std::string, record::LateCounts>& late);
 core::Markup latencyTable(const std::map<std::string, record::LatencySummary>& latencies);
+core::Markup steeringTable(const record::SessionResult& result);
 core::Markup faultTable(const std::vector<traffic::Fault>& faults);
 core::Markup originTable(const record::SessionResult& result);
 

@@ -40,8 +40,8 @@ class ResultWriter::Record {
         plans_(setup.options().simulation_step),
         front_views_(setup),
         hold_ups_(setup),
-        result_{setup,     timeline_,    cbv_,     approaches_, plans_,
-                guidance_, front_views_, driving_, hold_ups_,   facts} {
+        result_{setup,        timeline_, cbv_,      approaches_, plans_, guidance_,
+                front_views_, driving_,  hold_ups_, steering_,   facts} {
     folder_.remove(
         {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"});
     folder_.write("session.yaml", record::sessionYaml(setup, facts));
@@ -70,6 +70,7 @@ class ResultWriter::Record {
     front_views_.observe(snapshot);
     driving_.observe(snapshot);
     hold_ups_.observe(snapshot);
+    steering_.observe(record);
     writeTrace(snapshot);
   }
 
@@ -162,8 +163,8 @@ class ResultWriter::Record {
   }
 
   void decide() {
-    result_.verdict =
-        record::judge(result_.setup.options(), result_.status, result_.measures, result_.faults);
+    result_.verdict = record::judge(result_.setup.options(), result_.status, result_.measures,
+                                    result_.faults, steering_.records());
   }
 
   core::OutputFolder folder_;
@@ -180,6 +181,7 @@ class ResultWriter::Record {
   record::FrontViewLog front_views_;
   record::DrivingLog driving_;
   record::HoldUpLog hold_ups_;
+  record::SteeringLog steering_;
   record::LatencyLog latencies_;
   record::LateLog late_;
   record::SessionResult result_;

@@ -12,6 +12,7 @@
 #include "record/logs/hold_up_log.h"
 #include "record/logs/plan_log.h"
 #include "record/logs/planner_logs.h"
+#include "record/logs/steering_log.h"
 #include "record/verdict.h"
 #include "session/session_setup.h"
 
@@ -38,6 +39,7 @@ struct SessionResult {
   const FrontViewLog& front_views;
   const DrivingLog& driving;
   const HoldUpLog& hold_ups;
+  const SteeringLog& steering;
   RunFacts facts;
   traffic::SessionStatus status = traffic::SessionStatus::kError;
   double simulated_seconds = 0.0;

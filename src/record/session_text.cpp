@@ -30,6 +30,7 @@ std::string textOf(const Texts& texts, const std::string& word) {
 
 std::string rejectionText(const std::string& reason) {
   static const Texts kTexts = {
+      {cbv::kNotNamed, "cbv.only does not name it"},
       {cbv::kAlreadyChosen, "it was a CBV before, and the life cycle takes none twice"},
       {cbv::kInContact, "it touches another vehicle and is about to be removed"},
       {cbv::kTooFar, "it is farther from the ego than cbv.search_radius"},
@@ -50,6 +51,7 @@ std::string releaseText(const std::string& reason) {
                                {cbv::kGone, "left the simulation"},
                                {cbv::kConflictLost, "its conflict was lost"},
                                {cbv::kOutranked, "a better candidate took the slot"},
+                               {cbv::kSteered, "steering took it out of the slot"},
                                {kSessionEnd, "the session ended"}};
   return textOf(kTexts, reason);
 }
@@ -223,6 +225,8 @@ std::string sessionTable(const SessionResult& result, const std::filesystem::pat
   std::string text = headRows(result) + measureRows(result) + latencyRows(result.latencies);
   const std::string late = latenessText(result.late);
   if (!late.empty()) text += row("late answers", late);
+  for (const session::SteeringRecord& record : result.steering.records())
+    text += row("steered", steeringText(record));
   text += faultRows(repeatedFaults(result.faults));
   text += row("verdict", capitalsOf(result.verdict.outcome));
   for (const std::string& reason : result.verdict.reasons) text += row("", "- " + reason);

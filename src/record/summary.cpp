@@ -173,6 +173,30 @@ Json faultList(const std::vector<traffic::Fault>& faults) {
   return list;
 }
 
+/// Time of a tick without the last bit of the product: 5.8, not 5.800000000000001 [s].
+double secondsOf(std::uint64_t tick, double step) {
+  return std::round(static_cast<double>(tick) * step * 1e9) / 1e9;
+}
+
+/// What was steered, as `cdiff run --steering` reads it.
+Json steeringObject(const SessionResult& result) {
+  const session::ScenarioOptions& options = result.setup.options();
+  Json changes = Json::array();
+  for (const session::SteeringRecord& record : result.steering.records()) {
+    const auto& [by, what, before, after] = record.change;
+    changes.push_back({{"tick", record.tick},
+                       {"seconds", secondsOf(record.tick, options.simulation_step)},
+                       {"by", by},
+                       {"what", what},
+                       {"before", before},
+                       {"after", after},
+                       {"refused", record.refused}});
+  }
+  return {{"by_hand", result.steering.byHand()},
+          {"paced_by_wall_clock", options.real_time_factor > 0.0},
+          {"changes", changes}};
+}
+
 /// How the session was asked for and how it ended.
 Json headOf(const SessionResult& result) {
   const session::ScenarioOptions& options = result.setup.options();
@@ -214,6 +238,7 @@ std::string summaryJson(const SessionResult& result) {
   addMeasures(summary["metrics"], "metrics", result.measures);
   summary["planner_latency_ms"] = latencyObject(result.latencies);
   summary["late_answers"] = lateObject(result.late);
+  summary["steering"] = steeringObject(result);
   summary["faults"] = faultList(result.faults);
   summary["verdict"] = verdictObject(result.verdict);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -307,11 +332,6 @@ Json conflictObject(const cbv::ConflictPoint& conflict, const map::Route& ego_ro
           {"arrival_time_gap_s", conflict.arrivalTimeGap()},
           {"ego_arc_length_m", conflict.ego_arc_length},
           {"in_junction_or_beyond", atOrBeyondFirstJunction(conflict, ego_route)}};
-}
-
-/// Time of a tick without the last bit of the product: 5.8, not 5.800000000000001 [s].
-double secondsOf(std::uint64_t tick, double step) {
-  return std::round(static_cast<double>(tick) * step * 1e9) / 1e9;
 }
 
 Json selectionObject(const CbvRecord& record, const SessionResult& result) {

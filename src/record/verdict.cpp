@@ -96,7 +96,10 @@ class VerdictRules {
  public:
   VerdictRules(const session::ScenarioOptions& options, SessionStatus status,
                const metrics::SessionMeasures& measures)
-      : rules_(options.verdict), mode_(options.mode), status_(status), measures_(measures) {}
+      : rules_(options.verdict),
+        mode_(options.fiercestMode()),
+        status_(status),
+        measures_(measures) {}
 
   std::vector<Check> checks() {
     if (!rules_.judge) return {};
@@ -242,16 +245,28 @@ Outcome outcomeFrom(SessionStatus status, const std::vector<Check>& checks) {
 
 /// Why a session is not judged, and what is worth knowing of it all the same.
 std::vector<std::string> reasonsNotToJudge(const session::ScenarioOptions& options,
-                                           const metrics::SessionMeasures& measures) {
+                                           const metrics::SessionMeasures& measures,
+                                           const std::string& by_hand) {
   std::vector<std::string> reasons = {
-      options.verdict.judge
+      !by_hand.empty() ? by_hand
+      : options.verdict.judge
           ? "the scenario has no rules (group 'verdict'): the session cannot fail, whatever the "
             "ego does"
           : "the scenario is not to be judged (verdict.judge is false)"};
-  const BlamedContacts contacts(measures, options.verdict.excusesUnavoidable(options.mode));
+  const BlamedContacts contacts(measures,
+                                options.verdict.excusesUnavoidable(options.fiercestMode()));
   if (!contacts.fault.empty()) reasons.push_back(atFaultText(contacts.fault));
   for (const std::string& text : faultlessTexts(contacts)) reasons.push_back(text);
   return reasons;
+}
+
+/// Empty unless the session was steered by hand.
+std::string byHandText(const std::vector<session::SteeringRecord>& steering) {
+  std::size_t count = 0;
+  for (const session::SteeringRecord& record : steering) count += record.byHand() ? 1 : 0;
+  if (count == 0) return "";
+  return "the session was steered by hand in " + countText(count, "change") +
+         "; as a scenario it can be judged (cdiff steering)";
 }
 
 /// Notes the checks that made the outcome.
@@ -273,10 +288,14 @@ bool endedByItself(SessionStatus status) {
 }
 
 Verdict judge(const session::ScenarioOptions& options, SessionStatus status,
-              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults) {
+              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults,
+              const std::vector<session::SteeringRecord>& steering) {
   Verdict verdict;
   verdict.checks = {sessionCheck(status, faults)};
-  for (Check& check : VerdictRules(options, status, measures).checks()) {
+  const std::string by_hand = byHandText(steering);
+  std::vector<Check> rules;
+  if (by_hand.empty()) rules = VerdictRules(options, status, measures).checks();
+  for (Check& check : rules) {
     if (!endedByItself(status)) {
       check.outcome = CheckOutcome::kSkipped;
       check.text = "not judged: the session ended with status " + quotedStatus(status);
@@ -285,7 +304,7 @@ Verdict judge(const session::ScenarioOptions& options, SessionStatus status,
   }
   verdict.outcome = outcomeFrom(status, verdict.checks);
   if (verdict.outcome == Outcome::kNotJudged)
-    verdict.reasons = reasonsNotToJudge(options, measures);
+    verdict.reasons = reasonsNotToJudge(options, measures, by_hand);
   else
     addReasons(verdict);
   return verdict;
@@ -299,7 +318,7 @@ Blame blameOf(const metrics::EgoContact& contact, bool excuses_unavoidable) {
 std::string faultText(const session::ScenarioOptions& options,
                       const std::vector<metrics::EgoContact>& contacts) {
   if (contacts.empty()) return "";
-  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
+  const bool excuses = options.verdict.excusesUnavoidable(options.fiercestMode());
   const auto count = [&](Blame blame) {
     return std::count_if(contacts.begin(), contacts.end(),
                          [&](const auto& contact) { return blameOf(contact, excuses) == blame; });

@@ -10,6 +10,7 @@
 #include "metrics/session_metrics.h"
 #include "record/outcome.h"
 #include "session/scenario_options.h"
+#include "session/steering.h"
 
 namespace cdiff::record {
 
@@ -36,10 +37,12 @@ struct Verdict {
 /// Whether the session ended by its own rules, so that it can be judged.
 bool endedByItself(traffic::SessionStatus status);
 
-/// Applies the rules of `options.verdict` in `options.mode`. A session that broke or was
-/// interrupted is not judged by them.
+/// Applies the rules of `options.verdict` in the session's mode. A session that broke or was
+/// interrupted is not judged by them, nor is one that was steered by hand. Steering of the scenario
+/// itself is part of what is judged, by the fiercest mode that it ever sets.
 Verdict judge(const session::ScenarioOptions& options, traffic::SessionStatus status,
-              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults);
+              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults,
+              const std::vector<session::SteeringRecord>& steering = {});
 
 /// The ego's part in a contact, as the verdict counts it.
 enum class Blame {

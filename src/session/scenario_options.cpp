@@ -257,6 +257,15 @@ void ScenarioOptions::validate() const {
   validateSteering(*this);
 }
 
+std::string ScenarioOptions::fiercestMode() const {
+  std::string fiercest = mode;
+  for (const SteeringEntry& entry : steering) {
+    const bool fiercer = entry.mode == "safety_critical" || fiercest == "naturalistic";
+    if (!entry.mode.empty() && fiercer) fiercest = entry.mode;
+  }
+  return fiercest;
+}
+
 void ScenarioOptions::validateCameras() const {
   ego.laser.validate("ego.laser.");
   ego.lidar.validate("ego.lidar.");

@@ -114,6 +114,8 @@ struct ScenarioOptions {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError for fields that contradict each other.
   void validate() const;
+  /// Of the modes that the scenario begins with or is steered to, the one that attacks most.
+  std::string fiercestMode() const;
 
  private:
   void describeTraffic(core::OptionsVisitor& visitor);

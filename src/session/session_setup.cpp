@@ -93,7 +93,7 @@ metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   options.completion_percent = options_.protocol.completion_percent;
   options.completion_distance = options_.protocol.completion_distance;
   options.protocol = options_.protocol.preset;
-  options.mode = options_.mode;
+  options.mode = options_.fiercestMode();
   options.infractions = options_.protocol.infractions;
   options.target_speed = options_.target_speed;
   options.cbv_target_speed =

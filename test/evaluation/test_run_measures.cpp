@@ -50,5 +50,14 @@ TEST(RunMeasures, RefuseATextThatIsNoSummary) {
   EXPECT_THROW(readSummary("{}", "file"), core::InputError);
 }
 
+TEST(RunMeasures, NoneOfASessionThatWasSteeredByHand) {
+  const auto summaryWith = [](const std::string& by_hand) {
+    return R"({"status": "completed", "simulated_seconds": 12.5, "steering": {"by_hand": )" +
+           by_hand + R"(}, "verdict": {"outcome": "not_judged", "reasons": []}})";
+  };
+  EXPECT_EQ(readSummary(summaryWith("false"), "summary.json").status, "completed");
+  EXPECT_THROW(readSummary(summaryWith("true"), "summary.json"), core::InputError);
+}
+
 }  // namespace
 }  // namespace cdiff::evaluation

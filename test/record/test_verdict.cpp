@@ -39,6 +39,33 @@ Verdict judged(const session::VerdictOptions& rules, SessionStatus status,
   return judge(options, status, measures, faults);
 }
 
+TEST(Verdict, WhatWasSteeredByHandIsNotJudgedAndByTheScenarioIs) {
+  session::ScenarioOptions options;
+  options.verdict = session::VerdictOptions::standard();
+  const auto judgedWith = [&](const std::string& by) {
+    return judge(options, SessionStatus::kCompleted, someMeasures(), {},
+                 {{40, {by, "profile", "none", "naturalistic"}, ""}});
+  };
+  EXPECT_EQ(judgedWith(traffic::kSteeredByScenario).outcome, Outcome::kFailed);
+  const Verdict by_hand = judgedWith("node /panel");
+  EXPECT_EQ(by_hand.outcome, Outcome::kNotJudged);
+  EXPECT_EQ(by_hand.checks.size(), 1u);
+  EXPECT_NE(by_hand.reasons.front().find("by hand in 1 change;"), std::string::npos)
+      << by_hand.reasons.front();
+}
+
+TEST(Verdict, AScenarioThatTurnsToAttackIsJudgedAsOne) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.set(known::kRouteCompletion, {95.0, 1, "", ""});
+  measures.ego_contacts[0].ego_at_fault = false;
+  session::ScenarioOptions options;
+  options.verdict = session::VerdictOptions::standard();
+  EXPECT_EQ(judge(options, SessionStatus::kCompleted, measures, {}).outcome, Outcome::kFailed);
+  options.steering.resize(1);
+  options.steering[0].mode = "safety_critical";
+  EXPECT_EQ(judge(options, SessionStatus::kCompleted, measures, {}).outcome, Outcome::kStruck);
+}
+
 TEST(Verdict, WithoutAnyRuleEverythingThatEndedByItselfIsNotJudged) {
   for (const SessionStatus status :
        {SessionStatus::kCompleted, SessionStatus::kBlocked, SessionStatus::kDeviated,
