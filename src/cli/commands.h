@@ -24,6 +24,7 @@ void addDoctorCommand(CLI::App& program, int& exit_code);
 void addReportCommand(CLI::App& program, int& exit_code);
 void addRealismCommand(CLI::App& program, int& exit_code);
 void addSuiteCommand(CLI::App& program, int& exit_code);
+void addSteeringCommand(CLI::App& program, int& exit_code);
 void addTuneCommand(CLI::App& program, int& exit_code);
 void addWhatIfCommand(CLI::App& program, int& exit_code);
 /// Where the program is built with ROS.

@@ -64,6 +64,7 @@ void addCommands(CLI::App& program, int& exit_code) {
   addReportCommand(program, exit_code);
   addRealismCommand(program, exit_code);
   addSuiteCommand(program, exit_code);
+  addSteeringCommand(program, exit_code);
   addTuneCommand(program, exit_code);
   addWhatIfCommand(program, exit_code);
 #ifdef E2E_CDIFF_WITH_ROS

@@ -272,6 +272,8 @@ void addRunCommand(CLI::App& program, int& exit_code) {
   command->add_option("--seed", request.seed, "Root seed instead of the scenario's");
   command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);
+  command->add_option("--steering", request.steering,
+                      "Steer as a result folder, its summary.json or a scenario file says");
   command->add_option("--results", arguments->results,
                       "Result folder (default: results/SCENARIO_SEED_TIME)");
   command->add_flag("--overwrite", arguments->overwrite,

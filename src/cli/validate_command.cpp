@@ -14,6 +14,7 @@
 #include "map/lane_graph.h"
 #include "planners/registry.h"
 #include "session/scenario_review.h"
+#include "session/session_control.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
 #include "suite/seal.h"
@@ -67,6 +68,7 @@ bool validateOne(const std::string& scenario_name, const ValidateArguments& argu
     request.set = arguments.set;
     const session::ScenarioOptions options = session::resolveRequest(request);
     const session::SessionSetup setup(options);
+    const session::SessionControl control(setup);
     if (options.ego_planner != planning::kExternalPlanner) setup.makeEgoPlanner();
     setup.makeCbvPlanner();
     describeScenario(setup, arguments, suite::sealedSuiteOf(scenario_name).has_value());
