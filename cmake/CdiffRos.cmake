@@ -8,6 +8,8 @@ find_package(cv_bridge REQUIRED)
 find_package(image_transport REQUIRED)
 find_library(CDIFF_CV_BRIDGE_LIBRARY cv_bridge REQUIRED)
 find_library(CDIFF_IMAGE_TRANSPORT_LIBRARY image_transport REQUIRED)
+# Its messages; the library in its exports is of no use here.
+find_package(dynamic_reconfigure REQUIRED)
 # Its exports are actionlib and all that belongs to it.
 find_package(tf2_ros REQUIRED)
 find_library(CDIFF_TF2_ROS_LIBRARY tf2_ros REQUIRED)
@@ -16,6 +18,9 @@ find_library(CDIFF_TF2_LIBRARY tf2 REQUIRED)
 file(GLOB CDIFF_MESSAGES RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS
      ${PROJECT_SOURCE_DIR}/msg/*.msg)
 add_message_files(DIRECTORY msg FILES ${CDIFF_MESSAGES})
+file(GLOB CDIFF_SERVICES RELATIVE ${PROJECT_SOURCE_DIR}/srv CONFIGURE_DEPENDS
+     ${PROJECT_SOURCE_DIR}/srv/*.srv)
+add_service_files(DIRECTORY srv FILES ${CDIFF_SERVICES})
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 
 # What planners, objectives and metrics of other packages need (include/e2e_cdiff/plugins/plugin.h).

@@ -11,7 +11,7 @@ namespace {
 
 class SteeringCommand : public test::CdiffCommand {
  protected:
-  /// Runs a session of 6 s into a folder of that name; its trace.
+  /// Runs a session of 7 s into a folder of that name; its trace.
   std::string trace(const std::string& name, std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "run");
     arguments.insert(arguments.end(), {"--quiet", "--results", path(name)});
@@ -21,8 +21,8 @@ class SteeringCommand : public test::CdiffCommand {
   nlohmann::json summary(const std::string& name) const {
     return nlohmann::json::parse(core::readFile(path(name) + "/summary.json", "summary"));
   }
-  const std::vector<std::string> free_ = {"crossing_left_turn", "--set", "protocol.time_limit=6",
-                                          "--seed", "2"};
+  const std::vector<std::string> free_ = {"crossing_left_turn", "--set", "protocol.time_limit=7",
+                                          "--seed", "3"};
   std::vector<std::string> with(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = free_;
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -33,20 +33,20 @@ class SteeringCommand : public test::CdiffCommand {
 TEST_F(SteeringCommand, ARecordRepeatsTheSessionAndBecomesAScenario) {
   const std::string recorded = trace(
       "recorded",
-      with({"--set", "steering=[{at: 3, profile: safety_critical}, {at: 4, target_speed: 11}]",
+      with({"--set", "steering=[{at: 5, profile: safety_critical}, {at: 5.5, target_speed: 11}]",
             "--set", "report.front_view_rate=0"}));
   EXPECT_NE(trace("free", free_), recorded);
   EXPECT_EQ(trace("again", with({"--steering", path("recorded")})), recorded);
   ASSERT_EQ(cdiff({"steering", path("recorded")}), 0);
   expectOutput(
-      "\nsteering:\n  - {at: 3, profile: \"safety_critical\"}\n"
-      "  - {at: 4, target_speed: 11}\n");
+      "\nsteering:\n  - {at: 5, profile: \"safety_critical\"}\n"
+      "  - {at: 5.5, target_speed: 11}\n");
   std::ofstream(path("found.yaml")) << output();
   EXPECT_EQ(trace("found", {path("found.yaml")}), recorded);
   const nlohmann::json steering = summary("found").at("steering");
   EXPECT_EQ(steering.at("by_hand"), false);
   EXPECT_EQ(steering.at("changes").size(), 2U);
-  EXPECT_EQ(steering.at("changes")[0].at("tick"), 60);
+  EXPECT_EQ(steering.at("changes")[0].at("tick"), 100);
   EXPECT_EQ(steering.at("changes")[0].at("before"), "naturalistic");
 }
 

@@ -15,7 +15,7 @@ import junit  # noqa: E402
 
 # Headers that only some layers may read: pattern -> layers that may.
 RESTRICTED = {
-    "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|image_transport|cv_bridge|"
+    "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|dynamic_reconfigure|image_transport|cv_bridge|"
             r"[a-z_]+_msgs)/|/devel/include/", {"node_graph", "nodes", "cli", "examples"}),
     "torch": (r"^/usr/include/(torch|ATen|c10)/", {"learning", "planner_training"}),
     "planner training": (r"/src/planners/[a-z_0-9]+/training/", {"planner_training"}),

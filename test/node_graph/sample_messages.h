@@ -40,6 +40,8 @@ inline traffic::TrafficSnapshot sampleSnapshot(std::uint64_t tick) {
   snapshot.signals = {{"light", "rGy"}};
   snapshot.contacts = {{"bg_7", "ego"}};
   snapshot.removed = {"bg_1", "bg_2"};
+  snapshot.steering = {{"scenario", "profile", "none", "naturalistic"},
+                       {"node /panel", "choose", "", "bg_9"}};
   snapshot.faults = {{tick, "planner", "text with \"quotes\" and\na line"}};
   return snapshot;
 }

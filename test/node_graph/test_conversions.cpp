@@ -47,6 +47,10 @@ TEST(Conversions, SnapshotComesBackBitByBit) {
   EXPECT_EQ(back.faults[0].tick, snapshot.tick);
   EXPECT_EQ(back.faults[0].source, "planner");
   EXPECT_EQ(back.faults[0].text, snapshot.faults[0].text);
+  ASSERT_EQ(back.steering.size(), 2U);
+  const auto& [by, what, before, after] = back.steering[0];
+  EXPECT_EQ(by + " " + what + " " + before + " " + after, "scenario profile none naturalistic");
+  EXPECT_EQ(back.steering[1].after, "bg_9");
 }
 
 TEST(Conversions, EveryStatusComesBack) {

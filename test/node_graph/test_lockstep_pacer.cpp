@@ -74,15 +74,5 @@ TEST_F(LockstepPacerTest, SendsTheSnapshotAgainToAnExternalEgoThatIsLate) {
   EXPECT_EQ(again_, Ticks{4});
 }
 
-TEST_F(LockstepPacerTest, SleepsWhereItShallNotRunFaster) {
-  session::ScenarioOptions options = test::sampleOptions();
-  options.at_most = 2.0;
-  LockstepPacer& pacer = make<LockstepPacer>(options);
-  pacer.published(snapshotAt(5));  // 0.25 s
-  acknowledge(5);
-  EXPECT_FALSE(pacer.wait());
-  EXPECT_GE(pacer.elapsed(), 0.125);
-}
-
 }  // namespace
 }  // namespace cdiff::node_graph

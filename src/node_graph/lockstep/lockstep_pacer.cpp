@@ -48,11 +48,7 @@ std::optional<SessionEnd> LockstepPacer::wait() {
       return cause;
     close();
   }
-  if (auto cause =
-          session_.watch.waitFor([this] { return missingAtTick(); }, session_.answer_limit, again))
-    return cause;
-  if (options().at_most <= 0.0) return std::nullopt;
-  return session_.watch.sleepUntil(wallTime(published_->time / options().at_most));
+  return session_.watch.waitFor([this] { return missingAtTick(); }, session_.answer_limit, again);
 }
 
 /// A node of the user may connect while the first snapshot is sent; it gets the same snapshot

@@ -10,7 +10,7 @@
 namespace cdiff::node_graph {
 
 /// The world goes on when every answer and every acknowledgement that the tick needs is here,
-/// however long that takes within the limit; with `at_most` not earlier than that pace allows.
+/// however long that takes within the limit.
 class LockstepPacer : public Pacer {
  public:
   using Pacer::Pacer;

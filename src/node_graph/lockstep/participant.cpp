@@ -145,6 +145,7 @@ void Participant::queue(const Snapshot& snapshot) {
   if (snapshot->tick < next_tick_) return;  // sent again for a late listener
   next_tick_ = snapshot->tick + 1;
   gate_.setNewestTick(snapshot->tick + lead_, simulation_step_);
+  arrived(*snapshot);
   snapshots_.push_back(snapshot);
 }
 

@@ -51,6 +51,8 @@ class Participant {
   virtual void startSession(const ::e2e_cdiff::SessionInfo& info) = 0;
   /// What is missing besides connections before the first tick; empty when nothing is.
   virtual std::string waitingFor() const { return {}; }
+  /// A snapshot has come, in the order of ticks; it may be handled later or left out.
+  virtual void arrived(const ::e2e_cdiff::TrafficSnapshot&) {}
   /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot
   /// is there, nothing more will come.
   virtual bool handle(const Snapshot& snapshot, bool superseded) = 0;
@@ -82,6 +84,10 @@ class Participant {
   void listen(const Topic& topic, const TakeMessage& take);
   /// Acknowledges a tick to the traffic simulator: this node has processed it.
   void acknowledge(std::uint64_t tick) { publishAck(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
+  /// Tells the traffic simulator of a fault, which the session survives and records.
+  void reportFault(const std::string& text) {
+    publishAck(::e2e_cdiff::TickAck::FAULT, lastTick(), text);
+  }
   const SessionGraph& graph() const { return graph_; }
   /// Whether no message will come any more.
   bool over() const { return over_; }

@@ -60,6 +60,7 @@ traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double
   snapshot.decision_tick = false;
   snapshot.contacts.clear();
   snapshot.removed.clear();
+  snapshot.steering.clear();
   snapshot.status = status;
   snapshot.faults = {{last.tick, fault.source, fault.text}};
   return snapshot;

@@ -33,6 +33,15 @@ msgs::Fault toMsg(const traffic::Fault& fault) {
   return message;
 }
 
+msgs::SteeringChange toMsg(const traffic::SteeringChange& change) {
+  msgs::SteeringChange message;
+  message.by = change.by;
+  message.what = change.what;
+  message.before = change.before;
+  message.after = change.after;
+  return message;
+}
+
 std_msgs::Header headerOf(const traffic::TrafficSnapshot& snapshot) {
   std_msgs::Header header;
   header.stamp = toStamp(snapshot.time);
@@ -124,6 +133,8 @@ msgs::TrafficSnapshot toMsg(const traffic::TrafficSnapshot& snapshot) {
   }
   message.removed = snapshot.removed;
   for (const traffic::Fault& fault : snapshot.faults) message.faults.push_back(toMsg(fault));
+  for (const traffic::SteeringChange& change : snapshot.steering)
+    message.steering.push_back(toMsg(change));
   return message;
 }
 
@@ -147,7 +158,15 @@ traffic::TrafficSnapshot fromMsg(const msgs::TrafficSnapshot& message) {
   snapshot.removed = message.removed;
   for (const msgs::Fault& fault : message.faults)
     snapshot.faults.push_back({fault.tick, fault.source, fault.text});
+  snapshot.steering = fromMsg(message.steering);
   return snapshot;
+}
+
+std::vector<traffic::SteeringChange> fromMsg(const std::vector<msgs::SteeringChange>& changes) {
+  std::vector<traffic::SteeringChange> steering;
+  for (const msgs::SteeringChange& change : changes)
+    steering.push_back({change.by, change.what, change.before, change.after});
+  return steering;
 }
 
 msgs::ControlAction toMsg(const planning::PlannedAction& action,

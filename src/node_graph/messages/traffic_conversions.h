@@ -40,6 +40,8 @@ msgs::TrafficSnapshot toMsg(const traffic::TrafficSnapshot& snapshot);
 /// Throws InputError for an unknown status.
 traffic::TrafficSnapshot fromMsg(const msgs::TrafficSnapshot& message);
 
+std::vector<traffic::SteeringChange> fromMsg(const std::vector<msgs::SteeringChange>& changes);
+
 /// How an action came about.
 struct ActionOrigin {
   std::string planner;      ///< "ego:NAME" or "cbv:NAME"

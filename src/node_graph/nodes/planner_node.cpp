@@ -129,6 +129,7 @@ void CbvPlannerNode::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   const session::ScenarioOptions& options = setup_->options();
   planner_ = setup_->makeCbvPlanner();
+  steered_ = std::make_unique<session::SteeredCbvs>(options);
   images() = ImageInbox(setup_->rigs(), options.simulation_step);
   statistics_ = PlannerStatistics(options.decision_period);
   for (const Channel& row : channels()) {
@@ -178,10 +179,24 @@ bool CbvPlannerNode::handle(const Snapshot& message, bool superseded) {
   return true;
 }
 
+void CbvPlannerNode::arrived(const msgs::TrafficSnapshot& snapshot) {
+  if (!snapshot.steering.empty()) steering_[snapshot.tick] = fromMsg(snapshot.steering);
+}
+
+void CbvPlannerNode::followSteering(std::uint64_t tick) {
+  while (!steering_.empty() && steering_.begin()->first <= tick) {
+    const std::string unfollowed =
+        session::steerPlanner(steering_.begin()->second, *steered_, *planner_);
+    if (!unfollowed.empty()) reportFault(unfollowed);
+    steering_.erase(steering_.begin());
+  }
+}
+
 void CbvPlannerNode::plan(const traffic::TrafficSnapshot& snapshot,
                           const msgs::CbvSelection& message) {
+  followSteering(snapshot.tick);
   const cbv::CbvSelection selection = fromMsg(message, setup_->network());
-  const auto tasks = session::cbvTasks(snapshot, selection, *setup_);
+  const auto tasks = session::cbvTasks(snapshot, selection, *setup_, steered_->targetSpeed());
   if (tasks.empty()) return;
   const PlannerDecision decision = graph().cbvs_see
                                        ? planSeeing(*planner_, snapshot, tasks, images())

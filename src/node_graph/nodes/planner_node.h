@@ -16,6 +16,7 @@
 #include "node_graph/lockstep/participant.h"
 #include "node_graph/messages/session_conversions.h"
 #include "session/session_setup.h"
+#include "session/steered_cbvs.h"
 
 namespace cdiff::node_graph {
 
@@ -94,11 +95,14 @@ class CbvPlannerNode : public SeeingParticipant {
   void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
+  void arrived(const ::e2e_cdiff::TrafficSnapshot& snapshot) override;
   bool leavesOut() const override { return graph().paced; }
   int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
   void listenToInputs();
+  /// Follows what was steered up to a tick, whether its snapshots were left out or not.
+  void followSteering(std::uint64_t tick);
   /// Whether the images of every slot with a vehicle have arrived, where the planner sees.
   bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot,
                 const ::e2e_cdiff::CbvSelection& selection) const;
@@ -107,6 +111,8 @@ class CbvPlannerNode : public SeeingParticipant {
 
   std::unique_ptr<session::SessionSetup> setup_;
   std::unique_ptr<planning::Planner> planner_;
+  std::unique_ptr<session::SteeredCbvs> steered_;
+  std::map<std::uint64_t, std::vector<traffic::SteeringChange>> steering_;   ///< to follow, by tick
   std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
   std::map<Topic, ros::Publisher> answers_;
   ros::Publisher markers_;

@@ -22,10 +22,10 @@ constexpr double kInterruptedPatience =
     10.0;  // [s] for the observers' files; roslaunch ends us 15 s after the user
 
 std::vector<std::string> knownParameters() {
-  return {"scenario",         "bench2drive",    "route",   "network", "mode",   "ego_planner",
-          "cbv_planner",      "seed",           "set",     "record",  "folder", "participants",
-          "start_timeout",    "answer_timeout", "results", "camera",  "video",  "overwrite",
-          "heartbeat_timeout"};
+  return {"scenario",    "bench2drive", "route",        "network",       "mode",
+          "ego_planner", "cbv_planner", "seed",         "steering",      "set",
+          "record",      "folder",      "participants", "start_timeout", "answer_timeout",
+          "results",     "camera",      "video",        "overwrite",     "heartbeat_timeout"};
 }
 
 }  // namespace
@@ -74,11 +74,13 @@ int TrafficSimulatorNode::run() {
   if (!startWorld()) return core::ExitCode::kRunTimeError;
   advertise();
   listen();
+  services_ = std::make_unique<SessionServices>(world_->control(), *setup_);
   session_.publish(shared(sessionInfo(world_->simulatorVersion())));
   route_.publish(shared(toPathMsg(setup_->egoRoute())));
   if (const auto end = waitForParticipants()) endSession(*end);
   pacer_->begin();
   runTicks();
+  services_.reset();
   waitForResult();
   reserve_.reset();
   const int exit_code = exitCode();
@@ -217,12 +219,27 @@ std::string TrafficSimulatorNode::missingEgo() {
 void TrafficSimulatorNode::runTicks() {
   publishTick();
   while (world_->snapshot().status == SessionStatus::kRunning) {
-    if (const auto end = pacer_->wait())
+    std::optional<SessionEnd> end = pacer_->wait();
+    if (!end) end = holdBack();
+    if (end)
       endSession(*end);
     else
       advance();
     publishTick();
   }
+}
+
+/// Waits while the session is paused, or ahead of the pace that it is to keep at most.
+std::optional<SessionEnd> TrafficSimulatorNode::holdBack() {
+  using Clock = session::SessionControl::Clock;
+  session::SessionControl& control = world_->control();
+  while (!control.quitting()) {
+    const Clock::time_point now = Clock::now();
+    const Clock::duration wait = control.holdBack(world_->snapshot().time, now);
+    if (wait == Clock::duration::zero()) return std::nullopt;
+    if (auto cause = watch_.sleepUntil(now + wait)) return cause;
+  }
+  return SessionEnd{SessionStatus::kInterrupted, "user", "interrupted"};
 }
 
 void TrafficSimulatorNode::publishTick() {
@@ -237,6 +254,7 @@ void TrafficSimulatorNode::publishTick() {
   published_ = shared(std::move(message));
   clock_.publish(clock);
   gate_.setNewestTick(published_->tick, setup_->options().simulation_step);
+  services_->show(published_);
   display_.publish(snapshot);
   if (external_ego_) external_ego_->published(snapshot);
   traffic_.publish(published_);

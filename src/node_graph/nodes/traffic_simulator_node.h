@@ -18,6 +18,7 @@
 #include "node_graph/messages/display.h"
 #include "node_graph/messages/topics.h"
 #include "node_graph/nodes/external_ego.h"
+#include "node_graph/nodes/session_services.h"
 #include "node_graph/result_reserve.h"
 #include "node_graph/session_files.h"
 #include "record/result_folder.h"
@@ -58,6 +59,7 @@ class TrafficSimulatorNode {
   std::string missingEgo();
   std::optional<SessionEnd> waitForParticipants();
   void runTicks();
+  std::optional<SessionEnd> holdBack();
   void publishTick();
   void addTotals(::e2e_cdiff::TrafficSnapshot& message) const;
   void advance();
@@ -93,6 +95,7 @@ class TrafficSimulatorNode {
   std::unique_ptr<session::World> world_;
   std::unique_ptr<ResultReserve> reserve_;
   std::unique_ptr<Pacer> pacer_;
+  std::unique_ptr<SessionServices> services_;
   ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;
 };
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// Sessions that are steered while they run: by hand through the services of the node graph, by
+// their scenario, and by the record of another session.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "node_graph/session_launch.h"
+#include "rosbag/bag.h"
+#include "rosbag/view.h"
+
+namespace cdiff {
+namespace {
+
+const std::string kScenario =
+    "scenario:=crossing_left_turn seed:=3 cbv_planner:=diffusion record:=true ";
+
+/// "TICK WHAT AFTER" of every change in a bag.
+std::vector<std::string> changesIn(const fs::path& file) {
+  std::vector<std::string> changes;
+  rosbag::Bag bag(file.string(), rosbag::bagmode::Read);
+  for (const rosbag::MessageInstance& message : rosbag::View(bag, rosbag::TopicQuery("/traffic"))) {
+    const auto snapshot = message.instantiate<::e2e_cdiff::TrafficSnapshot>();
+    for (const ::e2e_cdiff::SteeringChange& change : snapshot->steering)
+      changes.push_back(std::to_string(snapshot->tick) + " " + change.what + " " + change.after);
+  }
+  return changes;
+}
+
+std::vector<std::string> changesIn(const nlohmann::json& summary) {
+  std::vector<std::string> changes;
+  for (const nlohmann::json& change : summary["steering"]["changes"]) {
+    changes.push_back(std::to_string(change["tick"].get<int>()) + " " +
+                      change["what"].get<std::string>() + " " + change["after"].get<std::string>());
+  }
+  return changes;
+}
+
+session::SessionRequest requestOf(const std::vector<std::string>& set) {
+  session::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "3";
+  request.cbv_planner = "diffusion";
+  request.set = set;
+  return request;
+}
+
+TEST_F(Session, SteeredByHandIsNotJudgedAndRepeatsToTheSameBytes) {
+  const fs::path found = folder_ / "found";
+  const std::string log =
+      launch("e2e_cdiff session.launch", kScenario + "set:=\"protocol.time_limit=8 at_most=1\"",
+             CDIFF_STEERING_HAND " " + found.string() + " " + results().string());
+  ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
+  // 1 is OK, 0 unsupported, 2 not found, 3 not in this state, 4 refused, 101 there already.
+  EXPECT_EQ(core::readFile(found, "answers"),
+            "pause 1\npause again 101\nstep 1\nsteps 1\nticks of 5 steps 5\nprofile 1\nweight 1\n"
+            "weight by dynparam 0\ntoo large by dynparam 0\nweight out of range 4\nunknown vehicle "
+            "4\ntarget speed 1\nremove 1\nremove nobody 2\n"
+            "spawn on the ego 101\nreset 0\nsteps with what was steered 1\nresume 1\n"
+            "step while running 3\npace 1\n");
+  const nlohmann::json recorded = summary();
+  EXPECT_EQ(recorded["verdict"]["outcome"], "not_judged") << recorded["verdict"];
+  EXPECT_EQ(recorded["steering"]["by_hand"], true);
+  const nlohmann::json changes = recorded["steering"]["changes"];
+  ASSERT_EQ(changes.size(), 5U) << changes;
+  EXPECT_EQ(changes[0]["what"], "profile");
+  EXPECT_EQ(changes[0]["before"], "naturalistic");
+  EXPECT_EQ(changes[0]["by"], "node /steering_hand");
+  EXPECT_EQ(changes[1]["before"], "50") << "the new profile's";
+  EXPECT_EQ(changes[2]["what"], "weight.traffic_avoidance");
+  EXPECT_EQ(changesIn(results() / "session.bag"), changesIn(recorded));
+  EXPECT_TRUE(recorded["guidance"].contains("collision_seeking")) << recorded["guidance"];
+
+  session::SessionRequest request = requestOf({"protocol.time_limit=8"});
+  request.steering = (folder_ / "recorded").string();
+  fs::create_directories(request.steering);
+  fs::copy_file(results() / "summary.json", fs::path(request.steering) / "summary.json");
+  const fs::path alone = folder_ / "one_process";
+  EXPECT_EQ(traceInOneProcess(request, alone), recorded["trace_sha256"]);
+  EXPECT_EQ(changesIn(summaryIn(alone)), changesIn(recorded));
+  EXPECT_NE(summaryIn(alone)["verdict"]["outcome"], "not_judged");
+  launch("e2e_cdiff session.launch", kScenario + "overwrite:=true steering:=" + request.steering +
+                                         " set:=\"protocol.time_limit=8\"");
+  EXPECT_EQ(summary()["trace_sha256"], recorded["trace_sha256"]);
+  EXPECT_EQ(summary()["steering"]["by_hand"], false);
+}
+
+// The CBVs attack from 4 s on; a paced session drops decisions, but not what they carry.
+TEST_F(Session, SteeringOfAPacedSessionIsFollowedButCannotBeRepeated) {
+  const fs::path list = folder_ / "turn.yaml";
+  std::ofstream(list) << "steering: [{at: 4, profile: safety_critical}]\n";
+  const std::string log = launch(
+      "e2e_cdiff session.launch",
+      kScenario + "set:=\"protocol.time_limit=8 real_time_factor=4\" steering:=" + list.string());
+  ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
+  EXPECT_EQ(changesIn(summary()), std::vector<std::string>{"80 profile safety_critical"});
+  session::SessionRequest request = requestOf({});
+  request.steering = results().string();
+  try {
+    session::resolveRequest(request);
+    FAIL() << "no error";
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("real_time_factor"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace cdiff
