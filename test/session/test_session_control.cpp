@@ -104,9 +104,9 @@ TEST(SessionControl, PaceCountsFromWhereItWasSet) {
   EXPECT_EQ(control.holdBack(1.0, begin + milliseconds(500)), Clock::duration::zero());
   control.setPace(1.0);
   EXPECT_EQ(control.holdBack(5.0, begin + milliseconds(600)), Clock::duration::zero());
-  EXPECT_EQ(control.holdBack(5.1, begin + milliseconds(690)), milliseconds(10));
+  EXPECT_EQ(control.holdBack(5.5, begin + milliseconds(1090)), milliseconds(10));
   control.setPace(0.0);
-  EXPECT_EQ(control.holdBack(50.0, begin + milliseconds(700)), Clock::duration::zero());
+  EXPECT_EQ(control.holdBack(50.0, begin + milliseconds(1100)), Clock::duration::zero());
   EXPECT_TRUE(
       mentions(refusalOf([&] { control.setPace(101.0); }), "expected a number in [0, 100]"));
   EXPECT_EQ(control.pace(), 0.0);
