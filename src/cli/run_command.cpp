@@ -21,9 +21,11 @@
 #include "session/closed_loop.h"
 #include "session/scenario_review.h"
 #include "session/session_request.h"
+#include "session/steering_file.h"
 #include "suite/seal.h"
 #include "video/session_video.h"
 #ifdef E2E_CDIFF_WITH_ROS
+#include "node_graph/bags/recorded_steering.h"
 #include "node_graph/bags/session_bag_writer.h"
 #endif
 
@@ -235,15 +237,26 @@ int runSession(const session::ScenarioOptions& options, const RunOutput& output)
 
 struct RunArguments {
   session::SessionRequest request;
+  std::string steering;
   std::string results;
   bool quiet = false;
   bool record = false;
   bool overwrite = false;
 };
 
+std::vector<session::SteeringEntry> steeringOf(const std::string& source) {
+#ifdef E2E_CDIFF_WITH_ROS
+  return node_graph::readSteering(source);
+#else
+  return session::readSteering(source);
+#endif
+}
+
 int run(const RunArguments& arguments) {
   suite::requireOpen(arguments.request.scenario);
-  const session::ScenarioOptions options = session::resolveRequest(arguments.request);
+  session::SessionRequest request = arguments.request;
+  if (!arguments.steering.empty()) request.steering = steeringOf(arguments.steering);
+  const session::ScenarioOptions options = session::resolveRequest(request);
   const fs::path folder =
       arguments.results.empty()
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
@@ -272,8 +285,9 @@ void addRunCommand(CLI::App& program, int& exit_code) {
   command->add_option("--seed", request.seed, "Root seed instead of the scenario's");
   command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--steering", request.steering,
-                      "Steer as a result folder, its summary.json or a scenario file says");
+  command->add_option("--steering", arguments->steering,
+                      "Steer as a result folder, its summary.json or session.bag, or a scenario "
+                      "file says");
   command->add_option("--results", arguments->results,
                       "Result folder (default: results/SCENARIO_SEED_TIME)");
   command->add_flag("--overwrite", arguments->overwrite,

@@ -9,6 +9,7 @@
 #include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "node_graph/bags/recorded_steering.h"
 #include "node_graph/lockstep/node_process.h"
 #include "ros/ros.h"
 #include "suite/seal.h"
@@ -101,7 +102,8 @@ session::SessionRequest sessionRequest(const Parameters& parameters) {
   request.ego_planner = parameters.text("ego_planner");
   request.cbv_planner = parameters.text("cbv_planner");
   request.seed = parameters.text("seed");
-  request.steering = parameters.text("steering");
+  const std::string steering = parameters.text("steering");
+  if (!steering.empty()) request.steering = readSteering(steering);
   request.video = parameters.flag("video", false);
   request.set = core::splitText(parameters.text("set"), ' ');
   request.set_source = "parameter ~set";

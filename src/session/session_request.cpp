@@ -14,7 +14,6 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "planning/plan_tracker.h"
 #include "session/preset_file.h"
-#include "session/steering_file.h"
 
 namespace cdiff::session {
 namespace {
@@ -256,7 +255,7 @@ ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOption
   apply("cbv_planner", request.cbv_planner);
   apply("seed", request.seed);
   if (request.video) options.video = true;
-  if (!request.steering.empty()) options.steering = readSteering(request.steering);
+  if (request.steering) options.steering = *request.steering;
   for (const std::string& assignment : request.set)
     core::overrideOption(assignment, request.set_source, options);
   return options;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,10 +77,10 @@ struct SessionRequest {
   std::string ego_planner;
   std::string cbv_planner;
   std::string seed;
-  std::string steering;              ///< see readSteering; replaces the scenario's
-  bool video = false;                ///< session.mp4 too
-  std::vector<std::string> set;      ///< "key=value" each, applied last
-  std::string set_source = "--set";  ///< how the user knows `set`, for errors
+  std::optional<std::vector<SteeringEntry>> steering{};  ///< instead of the scenario's list
+  bool video = false;                                    ///< session.mp4 too
+  std::vector<std::string> set;                          ///< "key=value" each, applied last
+  std::string set_source = "--set";                      ///< how the user knows `set`, for errors
 };
 
 /// The scenario with everything that was asked for applied and validated. Throws InputError.

@@ -25,11 +25,7 @@ std::vector<SteeringEntry> recordedSteering(const fs::path& summary) {
   const std::string place = "'" + summary.string() + "'";
   try {
     const json steering = json::parse(core::readFile(summary, "summary")).at("steering");
-    if (steering.at("paced_by_wall_clock").get<bool>()) {
-      throw InputError(place +
-                       ": the wall clock paced this session (real_time_factor), so that its "
-                       "steering cannot be repeated; expected a session in lockstep");
-    }
+    if (steering.at("paced_by_wall_clock").get<bool>()) refusePaced(summary);
     std::vector<SteeringEntry> entries;
     for (const json& change : steering.at("changes"))
       entries.push_back(entryOf(changeOf(change), change.at("seconds").get<double>()));
@@ -58,6 +54,12 @@ std::string scenarioText(const fs::path& file) {
 }
 
 }  // namespace
+
+void refusePaced(const fs::path& source) {
+  throw InputError("'" + source.string() +
+                   "': the wall clock paced this session (real_time_factor), so that its steering "
+                   "cannot be repeated; expected a session in lockstep");
+}
 
 std::vector<SteeringEntry> readSteering(const fs::path& source) {
   if (core::isFolder(source)) return recordedSteering(source / kSummary);

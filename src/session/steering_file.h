@@ -15,6 +15,9 @@ namespace cdiff::session {
 /// record of a session that the wall clock paced (real_time_factor), which cannot be repeated.
 std::vector<SteeringEntry> readSteering(const std::filesystem::path& source);
 
+/// Throws InputError for the record `source` of such a session.
+[[noreturn]] void refusePaced(const std::filesystem::path& source);
+
 /// The scenario that repeats the session of a result folder with what was steered in it: the
 /// resolved scenario with the list `steering`, an entry a line, as YAML. Throws InputError as
 /// readSteering, and for a folder without session.yaml.

@@ -8,6 +8,7 @@
 
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "node_graph/bags/recorded_steering.h"
 #include "node_graph/session_launch.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
@@ -75,14 +76,14 @@ TEST_F(Session, SteeredByHandIsNotJudgedAndRepeatsToTheSameBytes) {
   EXPECT_TRUE(recorded["guidance"].contains("collision_seeking")) << recorded["guidance"];
 
   session::SessionRequest request = requestOf({"protocol.time_limit=8"});
-  request.steering = (folder_ / "recorded").string();
-  fs::create_directories(request.steering);
-  fs::copy_file(results() / "summary.json", fs::path(request.steering) / "summary.json");
+  const fs::path bag = folder_ / "recorded.bag";
+  fs::copy_file(results() / "session.bag", bag);
+  request.steering = node_graph::readSteering(bag);
   const fs::path alone = folder_ / "one_process";
   EXPECT_EQ(traceInOneProcess(request, alone), recorded["trace_sha256"]);
   EXPECT_EQ(changesIn(summaryIn(alone)), changesIn(recorded));
   EXPECT_NE(summaryIn(alone)["verdict"]["outcome"], "not_judged");
-  launch("e2e_cdiff session.launch", kScenario + "overwrite:=true steering:=" + request.steering +
+  launch("e2e_cdiff session.launch", kScenario + "overwrite:=true steering:=" + bag.string() +
                                          " set:=\"protocol.time_limit=8\"");
   EXPECT_EQ(summary()["trace_sha256"], recorded["trace_sha256"]);
   EXPECT_EQ(summary()["steering"]["by_hand"], false);
@@ -97,13 +98,13 @@ TEST_F(Session, SteeringOfAPacedSessionIsFollowedButCannotBeRepeated) {
       kScenario + "set:=\"protocol.time_limit=8 real_time_factor=4\" steering:=" + list.string());
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
   EXPECT_EQ(changesIn(summary()), std::vector<std::string>{"80 profile safety_critical"});
-  session::SessionRequest request = requestOf({});
-  request.steering = results().string();
-  try {
-    session::resolveRequest(request);
-    FAIL() << "no error";
-  } catch (const core::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("real_time_factor"), std::string::npos);
+  for (const fs::path& record : {results(), results() / "session.bag"}) {
+    try {
+      node_graph::readSteering(record);
+      FAIL() << "no error of " << record;
+    } catch (const core::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("real_time_factor"), std::string::npos);
+    }
   }
 }
 
