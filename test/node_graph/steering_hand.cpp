@@ -23,6 +23,7 @@
 #include "e2e_cdiff/SteerSession.h"
 #include "e2e_cdiff/StepSimulation.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
+#include "nav_msgs/Odometry.h"
 #include "ros/ros.h"
 
 namespace {
@@ -65,6 +66,13 @@ int tune(const std::string& name, const std::string& value) {
                          .c_str());
 }
 
+/// As a slider does: many values in a row; how many were taken.
+int slide() {
+  int taken = 0;
+  for (int i = 1; i <= 100; ++i) taken += steer("weight.speed", std::to_string(0.01 * i));
+  return taken;
+}
+
 int remove(const std::string& id) {
   msgs::DeleteEntity service;
   service.request.entity = id;
@@ -96,6 +104,9 @@ class Hand {
     const boost::function<void(const msgs::TrafficSnapshot::ConstPtr&)> look =
         [this](const auto& snapshot) { newest_ = snapshot; };
     traffic_ = node_.subscribe<msgs::TrafficSnapshot>("/traffic", 10, look);
+    const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> follow =
+        [this](const auto& odometry) { odometry_ = odometry; };
+    cbv_odometry_ = node_.subscribe<nav_msgs::Odometry>("/cbv_0/odometry", 10, follow);
   }
 
   bool waitForCbv() {
@@ -115,10 +126,12 @@ class Hand {
     const long before = tickNow();
     note("steps", step(5));
     note("ticks of 5 steps", static_cast<int>(tickNow() - before));
+    note("odometry of the CBV", odometryCame() ? 1 : 0);
     note("profile", steer("profile", "safety_critical"));
     note("weight", steer("weight.collision_seeking", "20"));
     note("weight by dynparam", tune("traffic_avoidance_weight", "3"));
     note("too large by dynparam", tune("speed_weight", "2000"));
+    note("slider", slide());
     note("weight out of range", steer("weight.speed", "2000"));
     note("unknown vehicle", steer("choose", "nobody"));
     note("target speed", steer("target_speed", "10"));
@@ -134,6 +147,20 @@ class Hand {
   }
 
  private:
+  /// Whether the CBV of slot 0 has told where it is in the newest snapshot; the session is paused.
+  bool odometryCame() {
+    for (int i = 0; i < 1000 && ros::ok(); ++i) {
+      ros::spinOnce();
+      for (const msgs::Vehicle& vehicle : newest_->vehicles) {
+        if (vehicle.role == msgs::Vehicle::CBV && vehicle.cbv_slot == 0 && odometry_ &&
+            odometry_->header.stamp == newest_->header.stamp)
+          return odometry_->child_frame_id == vehicle.id + "/base_link" &&
+                 odometry_->pose.pose.position.x == vehicle.state.x;
+      }
+      ros::WallDuration(0.01).sleep();
+    }
+    return false;
+  }
   std::string idOf(std::uint8_t role) const {
     if (!newest_) return "";
     for (const msgs::Vehicle& vehicle : newest_->vehicles) {
@@ -164,7 +191,9 @@ class Hand {
   ros::NodeHandle node_;
   std::ofstream found_;
   ros::Subscriber traffic_;
+  ros::Subscriber cbv_odometry_;
   msgs::TrafficSnapshot::ConstPtr newest_;
+  nav_msgs::Odometry::ConstPtr odometry_;
 };
 
 }  // namespace

@@ -6,12 +6,15 @@
 
 #include <fstream>
 
+#include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/recorded_steering.h"
+#include "node_graph/bags/replay.h"
 #include "node_graph/session_launch.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
+#include "what_if/recorded_run.h"
 
 namespace cdiff {
 namespace {
@@ -29,6 +32,20 @@ std::vector<std::string> changesIn(const fs::path& file) {
       changes.push_back(std::to_string(snapshot->tick) + " " + change.what + " " + change.after);
   }
   return changes;
+}
+
+/// Weights of the objectives of the first CBV by their names, by tick.
+std::map<std::uint64_t, std::map<std::string, double>> weightsIn(const fs::path& file) {
+  std::map<std::uint64_t, std::map<std::string, double>> weights;
+  rosbag::Bag bag(file.string(), rosbag::bagmode::Read);
+  for (const rosbag::MessageInstance& message :
+       rosbag::View(bag, rosbag::TopicQuery("/cbv/guidance"))) {
+    const auto report = message.instantiate<::e2e_cdiff::GuidanceReport>();
+    if (report->vehicles.empty()) continue;
+    for (const ::e2e_cdiff::ObjectiveReport& objective : report->vehicles.front().objectives)
+      weights[report->tick][objective.name] = objective.weight;
+  }
+  return weights;
 }
 
 std::vector<std::string> changesIn(const nlohmann::json& summary) {
@@ -57,23 +74,35 @@ TEST_F(Session, SteeredByHandIsNotJudgedAndRepeatsToTheSameBytes) {
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
   // 1 is OK, 0 unsupported, 2 not found, 3 not in this state, 4 refused, 101 there already.
   EXPECT_EQ(core::readFile(found, "answers"),
-            "pause 1\npause again 101\nstep 1\nsteps 1\nticks of 5 steps 5\nprofile 1\nweight 1\n"
-            "weight by dynparam 0\ntoo large by dynparam 0\nweight out of range 4\nunknown vehicle "
-            "4\ntarget speed 1\nremove 1\nremove nobody 2\n"
-            "spawn on the ego 101\nreset 0\nsteps with what was steered 1\nresume 1\n"
-            "step while running 3\npace 1\n");
+            "pause 1\npause again 101\nstep 1\nsteps 1\nticks of 5 steps 5\n"
+            "odometry of the CBV 1\nprofile 1\nweight 1\nweight by dynparam 0\n"
+            "too large by dynparam 0\nslider 100\nweight out of range 4\nunknown vehicle 4\n"
+            "target speed 1\nremove 1\nremove nobody 2\nspawn on the ego 101\nreset 0\n"
+            "steps with what was steered 1\nresume 1\nstep while running 3\npace 1\n");
   const nlohmann::json recorded = summary();
   EXPECT_EQ(recorded["verdict"]["outcome"], "not_judged") << recorded["verdict"];
   EXPECT_EQ(recorded["steering"]["by_hand"], true);
   const nlohmann::json changes = recorded["steering"]["changes"];
-  ASSERT_EQ(changes.size(), 5U) << changes;
+  ASSERT_EQ(changes.size(), 6U) << changes;
   EXPECT_EQ(changes[0]["what"], "profile");
   EXPECT_EQ(changes[0]["before"], "naturalistic");
   EXPECT_EQ(changes[0]["by"], "node /steering_hand");
   EXPECT_EQ(changes[1]["before"], "50") << "the new profile's";
   EXPECT_EQ(changes[2]["what"], "weight.traffic_avoidance");
+  EXPECT_EQ(changes[3]["after"], "1") << "the last place of the slider";
   EXPECT_EQ(changesIn(results() / "session.bag"), changesIn(recorded));
   EXPECT_TRUE(recorded["guidance"].contains("collision_seeking")) << recorded["guidance"];
+  auto weights = weightsIn(results() / "session.bag");
+  const std::uint64_t steered = changes[0]["tick"];
+  ASSERT_TRUE(weights.count(steered) == 1 && weights.count(steered - 2) == 1) << steered;
+  EXPECT_EQ(weights[steered - 2].count("collision_seeking"), 0U);
+  EXPECT_EQ(weights[steered]["collision_seeking"], 20.0) << "in the decision of the change";
+  EXPECT_EQ(weights[steered]["traffic_avoidance"], 3.0);
+  const fs::path replayed = folder_ / "replayed";
+  node_graph::replayBag(results() / "session.bag", replayed);
+  EXPECT_EQ(summaryIn(replayed)["steering"], recorded["steering"]);
+  EXPECT_EQ(summaryIn(replayed)["verdict"], recorded["verdict"]);
+  EXPECT_EQ(what_if::RecordedRun(results()).scenario().steering.size(), 6U);
 
   session::SessionRequest request = requestOf({"protocol.time_limit=8"});
   const fs::path bag = folder_ / "recorded.bag";

@@ -13,6 +13,7 @@
 #include "rosgraph_msgs/Clock.h"
 #include "sensor_msgs/LaserScan.h"
 #include "sensor_msgs/PointCloud2.h"
+#include "std_msgs/Float64.h"
 #include "visualization_msgs/MarkerArray.h"
 
 namespace cdiff::node_graph {
@@ -261,11 +262,22 @@ Rows cameraRows() {
           cameraInfoRow(ChannelId::kCbvCameraInfo, "cbv_K/camera/camera_info", kCbvsShown)};
 }
 
+Channel figureRow(ChannelId id, const char* name, const char* help) {
+  return Row::of<std_msgs::Float64>(id, name, Party::kMetrics, help).vehicle();
+}
+
 Rows sensorRows() {
   return {Row::of<nav_msgs::Odometry>(ChannelId::kEgoOdometry, "ego/odometry", Party::kSimulator,
                                       "Pose and speed of the ego, with covariance.")
               .vehicle()
               .derived(&deriveOdometry, Recorded::kTick),
+          Row::of<nav_msgs::Odometry>(ChannelId::kCbvOdometry, "cbv_K/odometry", Party::kSimulator,
+                                      "The same of the CBV of a slot, while there is one.")
+              .vehicle(),
+          figureRow(ChannelId::kCbvTtc, "cbv_K/ttc",
+                    "Time to collision of ego and CBV [s], NaN where they miss each other."),
+          figureRow(ChannelId::kCbvGap, "cbv_K/gap", "Gap between their boxes [m]."),
+          figureRow(ChannelId::kCbvScore, "cbv_K/score", "Interaction score at selection."),
           Row::of<msgs::TrackedObjects>(ChannelId::kEgoObjects, "ego/objects", Party::kSimulator,
                                         "True vehicles around the ego, at every tick.")
               .vehicle(),

@@ -136,14 +136,27 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
 }
 
 void Display::showSensors(const session::SessionSetup& setup) {
+  constexpr std::uint32_t kQueueSize = 100;
   sensors_.emplace(node_, setup);
+  for (int slot = 0; slot < setup.options().max_cbv; ++slot)
+    odometry_.push_back(node_.advertise<nav_msgs::Odometry>(
+        Topic(ChannelId::kCbvOdometry, slot).name(), kQueueSize));
   mounts_.sendTransform(laserMount(traffic::kEgoId, setup.options().ego.laser.height, 0.0));
 }
 
 void Display::publish(const traffic::TrafficSnapshot& snapshot) {
   if (sensors_) sensors_->publish(snapshot);
+  publishOdometry(snapshot);
   if (rigs_) mountCameras(snapshot);
   transforms_.sendTransform(vehicleTransforms(snapshot));
+}
+
+void Display::publishOdometry(const traffic::TrafficSnapshot& snapshot) {
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role != traffic::VehicleRole::kCbv) continue;
+    const ros::Publisher& publisher = odometry_.at(static_cast<std::size_t>(vehicle.cbv_slot));
+    if (publisher.getNumSubscribers() > 0) publisher.publish(toOdometryMsg(vehicle, snapshot.time));
+  }
 }
 
 void Display::mountCameras(const traffic::TrafficSnapshot& snapshot) {

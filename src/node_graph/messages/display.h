@@ -41,22 +41,25 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
                             const session::VehicleRigs* rigs = nullptr);
 
 /// What people and tools look at, besides the session's own messages: what an ego's sensors would
-/// tell (EgoSensors), and the transforms of ego and CBVs, `map` -> `<vehicle>/base_link` at every
-/// tick and, once a vehicle, those of its camera. Nothing of the session is computed from it.
+/// tell (EgoSensors), the odometry of CBVs, and the transforms of ego and CBVs, `map` ->
+/// `<vehicle>/base_link` at every tick and, once a vehicle, those of its camera. Nothing of the
+/// session is computed from it.
 class Display {
  public:
   explicit Display(ros::NodeHandle& node) : node_(node) {}
-  /// What the ego senses in a session; `setup` must outlive this object.
+  /// What the ego senses in a session, and odometry of its CBVs; `setup` must outlive this object.
   void showSensors(const session::SessionSetup& setup);
   /// From now on tf holds the camera frames too.
   void showCameras(const session::VehicleRigs& rigs) { rigs_ = rigs; }
   void publish(const traffic::TrafficSnapshot& snapshot);
 
  private:
+  void publishOdometry(const traffic::TrafficSnapshot& snapshot);
   void mountCameras(const traffic::TrafficSnapshot& snapshot);
 
   ros::NodeHandle& node_;
   std::optional<EgoSensors> sensors_;
+  std::vector<ros::Publisher> odometry_;  ///< of CBVs, by slot
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster mounts_;
   std::optional<session::VehicleRigs> rigs_;

@@ -13,10 +13,12 @@
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "node_graph/messages/display.h"
+#include "node_graph/messages/slot_figures.h"
 #include "node_graph/node_main.h"
 #include "node_graph/session_files.h"
 #include "node_graph/session_graph.h"
 #include "record/session_text.h"
+#include "std_msgs/Float64.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -71,10 +73,18 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
   marker_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMarkers);
   map_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMapMarkers);
   map_output_.publish(mapMarkers(*setup_));
+  advertiseFigures();
   listenToAnswers(Party::kMetrics, setup_->options());
   diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
   diagnostics_->setHardwareID(setup_->options().name);
   diagnostics_->add("session", this, &MetricsNode::diagnose);
+}
+
+void MetricsNode::advertiseFigures() {
+  for (const ChannelId id : {ChannelId::kCbvTtc, ChannelId::kCbvGap, ChannelId::kCbvScore}) {
+    for (const Topic& topic : topicsOf(channel(id), graph()))
+      figures_[topic] = advertise<std_msgs::Float64>(topic);
+  }
 }
 
 bool MetricsNode::handle(const Snapshot& message, bool superseded) {
@@ -107,6 +117,13 @@ void MetricsNode::show(const traffic::TrafficSnapshot& snapshot,
   if (!snapshot.decision_tick && !final) return;
   if (marker_output_.getNumSubscribers() > 0)
     marker_output_.publish(markers_.build(snapshot, selection));
+  if (selection != nullptr) {
+    for (const SlotFigure& figure : slotFigures(snapshot, *selection)) {
+      std_msgs::Float64 number;
+      number.data = figure.value;
+      figures_.at(figure.topic).publish(number);
+    }
+  }
   diagnostics_->update();
 }
 

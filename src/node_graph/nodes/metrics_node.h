@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -35,6 +36,7 @@ class MetricsNode : public Observer {
  private:
   using Clock = std::chrono::steady_clock;
   void note(const std::vector<session::PlannerLatency>& latencies);
+  void advertiseFigures();
   void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   double wallSeconds() const;
@@ -53,6 +55,7 @@ class MetricsNode : public Observer {
   ros::Publisher reports_;
   ros::Publisher marker_output_;
   ros::Publisher map_output_;
+  std::map<Topic, ros::Publisher> figures_;  ///< of CBVs
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };
 
