@@ -11,6 +11,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "record/result_folder.h"
 #include "record/session_yaml.h"
+#include "session/steering_file.h"
 
 namespace cdiff::what_if {
 namespace {
@@ -107,6 +108,7 @@ void RecordedRun::readSummary() {
     if (status == "error")
       throw InputError(file + ": the session broke (status error); what_if needs one that ran");
     cut_off_ = status == "interrupted";
+    if (summary.contains("steering")) scenario_.steering = session::readSteering(file);
     for (const auto& contact : summary.at("ego").at("contacts")) {
       contacts_.push_back({contacts_.size() + 1, contact.at("tick"), contact.at("seconds"),
                            contact.at("with"), contact.at("ego_side")});

@@ -36,7 +36,7 @@ class RecordedRun {
   explicit RecordedRun(const std::filesystem::path& folder);
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// Without limit of pace, without video.
+  /// With what was steered, by hand too; without limit of pace, without video.
   const session::ScenarioOptions& scenario() const { return scenario_; }
   const std::vector<RecordedContact>& contacts() const { return contacts_; }
   const std::string& traceSha256() const { return trace_sha256_; }

@@ -54,11 +54,25 @@ TEST(Steering, BadEntriesAreNamed) {
         Case{"[{at: 1, mode: naturalistic}, {at: 2}]", "key 'steering[1]': it changes nothing"},
         Case{"[{at: 0, remove: car}]", "expected a later time"},
         Case{"[{at: 1, target_speed: 0.2}]", "[0.5, 40] m/s"},
-        Case{"[{at: 1, objective: spped, weight: 1}]", "'speed'"},
+        Case{"[{at: 1, objective: speedy, weight: 1}]", "'speed'"},
         Case{"[{at: 1, shade: red}]", "unknown key"}}) {
     EXPECT_NE(refusalOf(c.steering).find(c.reason), std::string::npos)
         << c.steering << ": " << refusalOf(c.steering);
   }
+}
+
+TEST(Steering, TheFiercestModeIsThatOfTheWholeSession) {
+  ScenarioOptions options;
+  const auto fiercestWith = [&](const std::string& mode) {
+    options.steering.emplace_back();
+    options.steering.back().mode = mode;
+    return options.fiercestMode();
+  };
+  EXPECT_EQ(fiercestWith(""), "naturalistic");
+  EXPECT_EQ(fiercestWith("challenging"), "challenging");
+  EXPECT_EQ(fiercestWith("naturalistic"), "challenging");
+  EXPECT_EQ(fiercestWith("safety_critical"), "safety_critical");
+  EXPECT_EQ(fiercestWith("challenging"), "safety_critical");
 }
 
 // Each field, as a change of the record, is the entry that asks for it again.
