@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "core/file.h"
 #include "e2e_cdiff/GuidanceReport.h"
@@ -50,6 +51,33 @@ TEST(Channels, TheDocumentationShowsTheTable) {
   EXPECT_NE(page.find(channelTable()), std::string::npos)
       << "docs/ros_api.md must hold this table:\n\n"
       << channelTable();
+}
+
+/// Whether a series of a plotting tool, "/TOPIC/FIELD" or "/TOPIC.FIELD", is of one of our topics.
+bool isOfATopic(const std::string& series) {
+  for (const Channel& row : channels()) {
+    std::string name = row.name;
+    const std::size_t slot = name.find('K');
+    if (slot != std::string::npos) name[slot] = '0';
+    if (name.front() != '/') name.insert(0, "/");
+    const bool begins = series.compare(0, name.size(), name) == 0;
+    if (begins &&
+        (series.size() == name.size() || series.find_first_of("/.", name.size()) == name.size()))
+      return true;
+  }
+  return false;
+}
+
+TEST(Channels, LayoutsOfPlottingToolsNameOurTopics) {
+  for (const char* file : {"plotjuggler.xml", "foxglove.json"}) {
+    const std::string text =
+        core::readFile(core::shareFolder() / "config" / "layouts" / file, "layout");
+    const std::regex quoted("\"(/[^\"]*)\"");
+    const std::sregex_iterator begin(text.begin(), text.end(), quoted);
+    EXPECT_GE(std::distance(begin, {}), 5) << file;
+    for (auto series = begin; series != std::sregex_iterator(); ++series)
+      EXPECT_TRUE(isOfATopic((*series)[1])) << file << ": " << (*series)[1];
+  }
 }
 
 /// Everybody takes part.
