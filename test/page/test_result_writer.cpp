@@ -98,6 +98,7 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                    "metrics",
                                    "planner_latency_ms",
                                    "late_answers",
+                                   "steering",
                                    "faults",
                                    "verdict"}));
   EXPECT_EQ(keysOf(summary["ego"]), Keys({"route_completion_percent",
