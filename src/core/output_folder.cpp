@@ -30,6 +30,35 @@ constexpr off_t kLargestRecord = off_t{1} << 23;  // [bytes]
 /// For another process to write the record.
 constexpr std::chrono::seconds kRecordPatience{5};
 constexpr const char* kPart = ".part";
+/// How often something is tried whose folder was renamed or deleted at that moment.
+constexpr int kTries = 5;
+
+/// What was being written is not there any more: its folder was renamed or deleted.
+class Vanished : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Throws Vanished or another InputError.
+[[noreturn]] void failOnRecord(const fs::path& folder, int reason) {
+  const fs::path file = folder / OutputFolder::kRecord;
+  if (reason != ENOENT) failOn(file, "write", reason);
+  throw Vanished("cannot write '" + file.string() + "': " + writeErrorText(reason));
+}
+
+/// Does it again, a few times, where the folder vanished meanwhile: each action looks anew where
+/// the folder is.
+template <typename Action>
+auto again(const Action& action) {
+  for (int left = kTries; left > 1; --left) {
+    try {
+      return action();
+    } catch (const Vanished&) {
+      continue;
+    }
+  }
+  return action();
+}
 
 /// The record of a folder, open and locked against other processes until it is changed, once.
 class Record {
@@ -45,7 +74,7 @@ class Record {
         continue;
       }
       if (!descriptor_ && errno != ELOOP && errno != EISDIR && errno != ENXIO)
-        failOn(folder / OutputFolder::kRecord, "write", errno);
+        failOnRecord(folder, errno);
       if (!descriptor_ || !readNames()) {
         throw InputError("'" + (folder / OutputFolder::kRecord).string() +
                          "' is no record of this program; move it away, or give another folder");
@@ -90,7 +119,7 @@ class Record {
     for (const std::string& name : names) text += name + "\n";
     std::string draft = file.string() + ".XXXXXX";
     const FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
-    if (!descriptor) failOn(file, "write", errno);
+    if (!descriptor) failOnRecord(folder_, errno);
     errno = ENOSPC;  // where less than all is written
     const bool written = ::pwrite(descriptor.get(), text.data(), text.size(), 0) ==
                              static_cast<ssize_t>(text.size()) &&
@@ -106,7 +135,7 @@ class Record {
     const fs::path draft = draftOf({});
     const int reason = placeUnlessThere(draft, folder_ / OutputFolder::kRecord);
     ::unlink(draft.c_str());
-    if (reason != 0 && reason != EEXIST) failOn(folder_ / OutputFolder::kRecord, "write", reason);
+    if (reason != 0 && reason != EEXIST) failOnRecord(folder_, reason);
   }
 
   /// Whether it is a record.
@@ -147,7 +176,7 @@ class Record {
     if (::rename(draft.c_str(), file.c_str()) == 0) return;
     const int reason = errno;
     ::unlink(draft.c_str());
-    failOn(file, "write", reason);
+    failOnRecord(folder_, reason);
   }
 
   int directory_;
@@ -222,17 +251,19 @@ void OutputFolder::makeAgain() const {
 }
 
 fs::path OutputFolder::claim(const std::string& name) {
-  const fs::path folder = path();
   const auto is_control = [](unsigned char sign) { return sign < 0x20 || sign == 0x7f; };
   if (name.empty() || name.find('/') != std::string::npos ||
       std::any_of(name.begin(), name.end(), is_control)) {
-    throw InputError("'" + (folder / name).string() +
+    throw InputError("'" + (path() / name).string() +
                      "' is no name for a file: it holds a slash or a control character");
   }
-  Record record(descriptor_.get(), folder, true);
-  requireOwn(descriptor_.get(), folder, name, record);
-  record.add(name);
-  return folder / name;
+  return again([&] {
+    const fs::path folder = path();
+    Record record(descriptor_.get(), folder, true);
+    requireOwn(descriptor_.get(), folder, name, record);
+    record.add(name);
+    return folder / name;
+  });
 }
 
 void OutputFolder::write(const std::string& name, std::string_view content) {
@@ -242,20 +273,23 @@ void OutputFolder::write(const std::string& name, std::string_view content) {
 }
 
 void OutputFolder::remove(const std::set<std::string>& names) {
-  const fs::path folder = path();
-  Record record(descriptor_.get(), folder, false);
-  std::set<std::string> gone;
-  for (const std::string& name : names) {
-    if (record.lists(name) && removeEntry(folder, name)) gone.insert(name);
-  }
-  record.erase(gone);
+  again([&] {
+    const fs::path folder = path();
+    Record record(descriptor_.get(), folder, false);
+    std::set<std::string> gone;
+    for (const std::string& name : names) {
+      if (record.lists(name) && removeEntry(folder, name)) gone.insert(name);
+    }
+    record.erase(gone);
+  });
 }
 
 /// Whether nothing of the program's is left under this name, which the record lists.
 bool OutputFolder::removeEntry(const fs::path& folder, const std::string& name) {
   struct stat status {};
   if (!isThere(descriptor_.get(), name, status)) return true;
-  if (S_ISREG(status.st_mode) && ::unlinkat(descriptor_.get(), name.c_str(), 0) != 0)
+  if (S_ISREG(status.st_mode) && ::unlinkat(descriptor_.get(), name.c_str(), 0) != 0 &&
+      errno != ENOENT)
     failOn(folder / name, "replace", errno);
   if (!S_ISDIR(status.st_mode)) return true;
   OutputFolder(folder / name).clear();
@@ -325,10 +359,13 @@ PendingFile::~PendingFile() {
 /// Opens a new file of the temporary name.
 void PendingFile::open() {
   folder_.remove({part_});  // of a write that was cut off
-  folder_.claim(part_);
-  constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-  descriptor_ = FileDescriptor(::openat(folder_.descriptor_.get(), part_.c_str(), kFlags, 0644));
-  if (!descriptor_) fail(errno);
+  for (int left = kTries; left > 0 && !descriptor_; --left) {
+    folder_.claim(part_);
+    constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    descriptor_ = FileDescriptor(::openat(folder_.descriptor_.get(), part_.c_str(), kFlags, 0644));
+    if (!descriptor_ && errno != ENOENT) fail(errno);
+  }
+  if (!descriptor_) fail(ENOENT);
 }
 
 void PendingFile::append(std::string_view text) {
@@ -344,14 +381,27 @@ void PendingFile::append(std::string_view text) {
 void PendingFile::finish() {
   // The room that was not needed is given back.
   if (::ftruncate(descriptor_.get(), written_) != 0) fail(errno);
+  int left = kTries;
+  while (!place()) {
+    if (--left == 0) fail(ENOENT);
+  }
+  descriptor_.close();
+  folder_.remove({part_});
+}
+
+/// Gives the file its name. Whether it was there to be named: its folder may have vanished.
+bool PendingFile::place() {
   folder_.path();  // looks where the folder is
   if (!isSameFile(descriptor_.get(), folder_.descriptor_.get(), part_.c_str())) restore();
   if (::fsync(descriptor_.get()) != 0 && errno != EINVAL) fail(errno);
-  if (descriptor_.close() != 0) fail(errno);
+  // A file system that writes late says at a close what it could not write.
+  FileDescriptor copy(::dup(descriptor_.get()));
+  if (!copy || copy.close() != 0) fail(errno);
   claimOrKeep();
   const int directory = folder_.descriptor_.get();
-  if (::renameat(directory, part_.c_str(), directory, name_.c_str()) != 0) fail(errno);
-  folder_.remove({part_});
+  if (::renameat(directory, part_.c_str(), directory, name_.c_str()) == 0) return true;
+  if (errno != ENOENT) fail(errno);
+  return false;
 }
 
 /// Where a file of the user's has the name by now, what was written stays as NAME.part.

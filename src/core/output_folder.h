@@ -104,6 +104,7 @@ class PendingFile {
 
  private:
   void open();
+  bool place();
   void claimOrKeep();
   void restore();
   void discard();

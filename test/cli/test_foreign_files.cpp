@@ -3,6 +3,7 @@
 // No command touches a file that the program did not make, whatever it is called: real processes.
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 #include <map>
 #include <sstream>
@@ -310,6 +311,8 @@ TEST_F(ForeignFiles, AFolderThatIsRenamedOrDeletedMeanwhileGetsWhatCanBeSaved) {
     while (!fs::exists(results() / "session.yaml"))
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     process.signal(SIGSTOP);
+    siginfo_t stopped{};
+    ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(process.id()), &stopped, WSTOPPED | WNOWAIT), 0);
     if (renamed) {
       fs::rename(results(), folder("moved"));
     } else {

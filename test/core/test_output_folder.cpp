@@ -4,15 +4,22 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
+#include <cstring>
 #include <fstream>
 #include <functional>
+#include <new>
 #include <optional>
+#include <random>
 #include <set>
 #include <string>
+#include <thread>
 
 #include "core/file.h"
 #include "core/output_folder.h"
@@ -284,6 +291,55 @@ TEST_F(OutputFolderTest, ARenamedFolderIsFollowedAndADeletedOneMadeAgain) {
   second.finish();
   EXPECT_TRUE(output.wasDeleted());
   EXPECT_EQ(readFile(folder() / "second", "file"), "saved");
+}
+
+/// Memory that a child shares.
+struct Shared {
+  std::atomic<int> writes{0};
+  std::atomic<bool> end{false};
+};
+
+/// Writes files until it shall end; ends with 1 at an error.
+void writeUntilEnd(const fs::path& folder, Shared& shared) {
+  try {
+    OutputFolder output(folder);
+    for (; !shared.end; ++shared.writes)
+      output.write("file_" + std::to_string(shared.writes % 3), "content");
+    ::_exit(0);
+  } catch (const std::exception& error) {
+    static_cast<void>(!::write(STDERR_FILENO, error.what(), std::strlen(error.what())));
+    ::_exit(1);
+  }
+}
+
+TEST_F(OutputFolderTest, AFolderMayBeRenamedOrDeletedAtAnyMomentOfAWrite) {
+  void* memory =
+      ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  auto& shared = *new (memory) Shared;
+  const pid_t writer = ::fork();
+  if (writer == 0) writeUntilEnd(folder(), shared);
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> pause(0, 2000);  // [us]
+  int status = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const int before = shared.writes;
+    while (shared.writes < before + 2 && ::waitpid(writer, &status, WNOHANG) == 0)
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    std::this_thread::sleep_for(std::chrono::microseconds(pause(random)));
+    ::kill(writer, SIGSTOP);
+    ASSERT_EQ(::waitpid(writer, &status, WUNTRACED), writer) << "it ended in trial " << trial;
+    ASSERT_TRUE(WIFSTOPPED(status)) << "it ended in trial " << trial;
+    const fs::path moved = scratch_.path() / "moved";
+    fs::remove_all(moved);
+    if (trial % 2 == 0 && fs::exists(folder())) fs::rename(folder(), moved);
+    if (trial % 2 == 1) fs::remove_all(folder());
+    ::kill(writer, SIGCONT);
+  }
+  shared.end = true;
+  ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  ::munmap(memory, sizeof(Shared));
 }
 
 TEST_F(OutputFolderTest, APendingFileIsThereWhenFinishedOnlyAndTakesItsRoom) {
