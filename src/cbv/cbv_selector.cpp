@@ -82,8 +82,9 @@ void HeldCbv::setPresentScore(std::optional<double> score, double time) {
 }
 
 CbvSelector::CbvSelector(const CbvOptions& options, int max_cbv, const map::LaneGraph& graph,
-                         const map::Route& ego_route)
-    : options_(validated(options)),
+                         const map::Route& ego_route, const std::string& mode)
+    : life_cycle_(options.life_cycle),
+      options_(validated(options).inMode(mode)),
       max_cbv_(max_cbv),
       graph_(graph.allowingTurnsOf(ego_route)),
       ego_route_(ego_route),
@@ -104,6 +105,7 @@ CbvSelection CbvSelector::update(const traffic::TrafficSnapshot& snapshot) {
   selection.tick = snapshot.tick;
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego != nullptr) followEgo(*ego);
+  followMode(snapshot);
   releaseSteered(snapshot, selection);
   updateHeld(snapshot, selection);
   if (ego != nullptr) chooseSteered(snapshot, selection);
@@ -114,6 +116,15 @@ CbvSelection CbvSelector::update(const traffic::TrafficSnapshot& snapshot) {
   std::sort(selection.rejected.begin(), selection.rejected.end(),
             [](const auto& left, const auto& right) { return left.vehicle_id < right.vehicle_id; });
   return selection;
+}
+
+/// Who is held stays; who was released for good under "rift" stays released.
+void CbvSelector::followMode(const traffic::TrafficSnapshot& snapshot) {
+  for (const traffic::SteeringChange& change : snapshot.steering) {
+    if (change.what != traffic::steered::kMode) continue;
+    options_.life_cycle = life_cycle_;
+    options_ = options_.inMode(change.after);
+  }
 }
 
 void CbvSelector::followEgo(const traffic::Vehicle& ego) {

@@ -100,9 +100,10 @@ class VehicleSelector {
 class CbvSelector : public VehicleSelector {
  public:
   /// Keeps references: the graph's network and the route must outlive the selector. Throws
-  /// InputError for bad options or a negative count.
+  /// InputError for bad options or a negative count. `mode` is that of the session's begin; the
+  /// life cycle "by_mode" is that of the mode, also of one that steering sets.
   CbvSelector(const CbvOptions& options, int max_cbv, const map::LaneGraph& graph,
-              const map::Route& ego_route);
+              const map::Route& ego_route, const std::string& mode = "naturalistic");
   CbvSelector(const CbvSelector&) = delete;
   CbvSelector& operator=(const CbvSelector&) = delete;
 
@@ -121,6 +122,7 @@ class CbvSelector : public VehicleSelector {
   };
 
   bool reselects() const { return options_.life_cycle == "reselect"; }
+  void followMode(const traffic::TrafficSnapshot& snapshot);
   void followEgo(const traffic::Vehicle& ego);
   bool selectionDue(double time);
   bool queued(const traffic::Vehicle& vehicle, const map::LanePosition& place) const;
@@ -146,7 +148,8 @@ class CbvSelector : public VehicleSelector {
   int slotFor(const Candidate& candidate, std::uint64_t tick) const;
   std::optional<HeldCbv> makeHeld(int slot, const Candidate& candidate, std::uint64_t tick) const;
 
-  CbvOptions options_;
+  std::string life_cycle_;  ///< as given; "by_mode" follows the mode
+  CbvOptions options_;      ///< with the life cycle of the mode
   int max_cbv_;
   map::LaneGraph graph_;  ///< turns round only where the ego's route does
   const map::Route& ego_route_;

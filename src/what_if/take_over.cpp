@@ -100,9 +100,8 @@ void runFollowed(const RecordedRun& run, const session::SessionSetup& setup,
 
 std::unique_ptr<cbv::VehicleSelector> makeSelector(const session::SessionSetup& setup) {
   const session::ScenarioOptions& options = setup.options();
-  return std::make_unique<cbv::CbvSelector>(options.cbv.inMode(options.mode),
-                                            static_cast<int>(options.max_cbv), setup.graph(),
-                                            setup.egoRoute());
+  return std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
+                                            setup.graph(), setup.egoRoute(), options.mode);
 }
 
 }  // namespace

@@ -132,6 +132,25 @@ TEST(LifeCycle, RiftNeverRanksAgain) {
   EXPECT_EQ(reasonOf(later, "weak"), "");
 }
 
+// As above, but for the mode that steering sets; a life cycle that the scenario names stays.
+TEST(LifeCycle, FollowsTheModeThatSteeringSets) {
+  for (const char* life_cycle : {"by_mode", "rift"}) {
+    CbvOptions options;
+    options.life_cycle = life_cycle;
+    CrossingWorld world(options, 1);
+    world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("weak", -20.0, 2.0)}));
+    auto snapshot = crossingSnapshot(
+        kFirst + kPeriod, 70.0,
+        {driven(fromSouth("weak", -20.0, 2.0), 0), fromNorth("better", 30.0, 9.0)});
+    snapshot.steering = {{"me", "mode", "naturalistic", "challenging"}};
+    const auto later = world.selector.update(snapshot);
+    ASSERT_EQ(later.assignments.size(), 1u);
+    const bool follows = options.life_cycle == "by_mode";
+    EXPECT_EQ(later.assignments[0].vehicle_id, follows ? "better" : "weak") << life_cycle;
+    EXPECT_EQ(later.released.size(), follows ? 1u : 0u);
+  }
+}
+
 TEST(LifeCycle, ContactReleasesAndTheFreedSlotIsFilled) {
   CrossingWorld world;
   const std::vector<traffic::Vehicle> both = {fromSouth("a", -30.0, 9.0),
