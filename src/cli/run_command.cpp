@@ -18,6 +18,7 @@
 #include "planners/registry.h"
 #include "record/result_folder.h"
 #include "record/session_text.h"
+#include "record/session_yaml.h"
 #include "session/closed_loop.h"
 #include "session/scenario_review.h"
 #include "session/session_request.h"
@@ -252,11 +253,21 @@ std::vector<session::SteeringEntry> steeringOf(const std::string& source) {
 #endif
 }
 
+void requireSameSession(const std::string& source, const session::ScenarioOptions& options) {
+#ifdef E2E_CDIFF_WITH_ROS
+  const session::SteeredSession recorded = node_graph::steeredSession(source);
+#else
+  const session::SteeredSession recorded = session::steeredSession(source);
+#endif
+  session::requireSameSession(source, recorded, options, record::packageVersion());
+}
+
 int run(const RunArguments& arguments) {
   suite::requireOpen(arguments.request.scenario);
   session::SessionRequest request = arguments.request;
   if (!arguments.steering.empty()) request.steering = steeringOf(arguments.steering);
   const session::ScenarioOptions options = session::resolveRequest(request);
+  if (!arguments.steering.empty()) requireSameSession(arguments.steering, options);
   const fs::path folder =
       arguments.results.empty()
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +

@@ -12,6 +12,7 @@
 #include "node_graph/bags/recorded_steering.h"
 #include "node_graph/lockstep/node_process.h"
 #include "ros/ros.h"
+#include "session/steering_file.h"
 #include "suite/seal.h"
 
 namespace cdiff::node_graph {
@@ -115,7 +116,11 @@ session::SessionRequest sessionRequest(const Parameters& parameters) {
 session::ScenarioOptions requestedScenario(const Parameters& parameters) {
   const session::SessionRequest request = sessionRequest(parameters);
   suite::requireOpen(request.scenario);
-  return session::resolveRequest(request);
+  session::ScenarioOptions options = session::resolveRequest(request);
+  const std::string steering = parameters.text("steering");
+  if (!steering.empty())
+    session::requireSameSession(steering, steeredSession(steering), options, E2E_CDIFF_VERSION);
+  return options;
 }
 
 }  // namespace cdiff::node_graph

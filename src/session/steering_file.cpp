@@ -6,7 +6,6 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "session/scenario_options.h"
 
 namespace cdiff::session {
 namespace {
@@ -69,6 +68,54 @@ std::vector<SteeringEntry> readSteering(const fs::path& source) {
   throw InputError("'" + source.string() +
                    "': it lists no steering; expected a scenario file with the key 'steering', a "
                    "result folder, or its summary.json");
+}
+
+namespace {
+
+/// The package's version in a session.yaml; empty where there is none.
+std::string versionIn(const fs::path& file) {
+  if (!core::isFile(file)) return "";
+  const std::string text = core::readFile(file, "session record", core::kLargestOptionsFile);
+  const std::string key = "\n  version: \"";
+  const std::size_t package = text.find("\npackage:\n");
+  const std::size_t begin = package == std::string::npos ? package : text.find(key, package);
+  if (begin == std::string::npos) return "";
+  const std::size_t value = begin + key.size();
+  return text.substr(value, text.find('"', value) - value);
+}
+
+std::string sessionText(const std::string& scenario, std::int64_t seed) {
+  return "scenario '" + scenario + "' with seed " + std::to_string(seed);
+}
+
+}  // namespace
+
+SteeredSession steeredSession(const fs::path& source) {
+  const fs::path summary = core::isFolder(source) ? source / kSummary : source;
+  if (summary.extension() != ".json") return {};
+  try {
+    const json record = json::parse(core::readFile(summary, "summary"));
+    return {record.value("scenario", ""), record.value("seed", std::int64_t{0}),
+            versionIn(summary.parent_path() / "session.yaml")};
+  } catch (const json::exception& error) {
+    throw InputError("'" + summary.string() + "': it is no summary of a session: " + error.what());
+  }
+}
+
+void requireSameSession(const fs::path& source, const SteeredSession& recorded,
+                        const ScenarioOptions& options, const std::string& version) {
+  if (recorded.scenario.empty()) return;
+  const std::string as_list =
+      "; to steer another session alike, give the list that `cdiff steering RESULT` prints";
+  if (recorded.scenario != options.name || recorded.seed != options.seed) {
+    throw InputError("'" + source.string() + "': its steering is that of " +
+                     sessionText(recorded.scenario, recorded.seed) + ", and this session is " +
+                     sessionText(options.name, options.seed) + as_list);
+  }
+  if (recorded.version.empty() || recorded.version == version) return;
+  throw InputError("'" + source.string() + "': e2e_cdiff " + recorded.version +
+                   " recorded its steering, and this is " + version +
+                   ", which may drive otherwise; repeat it with that version" + as_list);
 }
 
 std::string steeredScenario(const fs::path& result) {

@@ -2,10 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "session/scenario_options.h"
 #include "session/steering.h"
 
 namespace cdiff::session {
@@ -17,6 +19,19 @@ std::vector<SteeringEntry> readSteering(const std::filesystem::path& source);
 
 /// Throws InputError for the record `source` of such a session.
 [[noreturn]] void refusePaced(const std::filesystem::path& source);
+
+/// Of which session a record of steering is.
+struct SteeredSession {
+  std::string scenario;  ///< name; empty where the source is no record
+  std::int64_t seed = 0;
+  std::string version;  ///< of the package that recorded it; empty where it does not say
+};
+/// Of a result folder or its summary.json; of any other source none.
+SteeredSession steeredSession(const std::filesystem::path& source);
+/// Throws InputError naming `source` where `recorded` is another session than `options` asks for,
+/// or by another version of the package than `version`: it would not repeat to the same bytes.
+void requireSameSession(const std::filesystem::path& source, const SteeredSession& recorded,
+                        const ScenarioOptions& options, const std::string& version);
 
 /// The scenario that repeats the session of a result folder with what was steered in it: the
 /// resolved scenario with the list `steering`, an entry a line, as YAML. Throws InputError as

@@ -167,7 +167,7 @@ TEST_F(DamagedBags, NothingToEvaluateIsAnErrorThatWritesNothing) {
            if (message.getTopic() == "/traffic") (*header)["md5sum"] = std::string(32, '0');
            to.write(message.getTopic(), message.getTime(), message, header);
          }),
-         "topic '/traffic' holds e2e_cdiff/TrafficSnapshot with MD5 sum 0000");
+         "recorded it, and its e2e_cdiff/TrafficSnapshot (MD5 sum 0000");
   expect(replayWith([](msgs& snapshot) {
            snapshot.vehicles.push_back(snapshot.vehicles.front());
            snapshot.vehicles.back().id = "ego_2";

@@ -61,6 +61,7 @@ RecordedSession::RecordedSession(const std::filesystem::path& bag, RecordedImage
     : reader_(bag), images_(images), topics_(std::make_unique<Topics>()) {
   try {
     readInfo();
+    requireReadableTicks();
     setup_ = setupOf(*info_);
     const session::ScenarioOptions& options = setup_->options();
     graph_ = info_->participants.empty() ? graphOf(options, GraphRequest()) : graphOf(*info_);
@@ -89,6 +90,21 @@ void RecordedSession::readInfo() {
   if (core::sha256(info_->network_text) != info_->network_text_sha256)
     throw InputError("the network in it has not the SHA-256 that was recorded beside it");
   reader_.rewind();
+}
+
+/// A version whose ticks are others can replay the bag; this one cannot.
+void RecordedSession::requireReadableTicks() const {
+  const Topic traffic(ChannelId::kTraffic);
+  const MessageType& type = traffic.row().type;
+  for (const BagConnection& connection : reader_.connections()) {
+    if (connection.topic != prefix_ + traffic.name() || connection.type != type.name ||
+        connection.md5sum == type.md5sum)
+      continue;
+    throw InputError("e2e_cdiff " + info_->package_version + " recorded it, and its " + type.name +
+                     " (MD5 sum " + connection.md5sum + ") is another than that of this version, " +
+                     E2E_CDIFF_VERSION + "; replay it with e2e_cdiff " + info_->package_version +
+                     ", or record the session again");
+  }
 }
 
 void RecordedSession::find(const std::string& text) {

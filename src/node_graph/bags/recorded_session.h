@@ -60,6 +60,7 @@ class RecordedSession {
  private:
   struct Topics;
   void readInfo();
+  void requireReadableTicks() const;
   bool readMessage();
   void take(const BagMessage& message);
   void dispatch(const Topic& topic, const BagMessage& message);

@@ -24,4 +24,11 @@ std::vector<session::SteeringEntry> readSteering(const std::filesystem::path& so
                          core::joinText(session.findings(), "; "));
 }
 
+session::SteeredSession steeredSession(const std::filesystem::path& source) {
+  if (source.extension() != ".bag") return session::steeredSession(source);
+  const RecordedSession session(source);
+  const session::ScenarioOptions& options = session.setup().options();
+  return {options.name, options.seed, session.info().package_version};
+}
+
 }  // namespace cdiff::node_graph

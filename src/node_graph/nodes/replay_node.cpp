@@ -7,6 +7,13 @@
 
 #include "core/program.h"
 #include "core/text.h"
+#include "e2e_cdiff/DeleteEntity.h"
+#include "e2e_cdiff/ResetSimulation.h"
+#include "e2e_cdiff/SetEntityState.h"
+#include "e2e_cdiff/SetSimulationState.h"
+#include "e2e_cdiff/SpawnEntity.h"
+#include "e2e_cdiff/SteerSession.h"
+#include "e2e_cdiff/StepSimulation.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/lockstep/decision_tracker.h"
@@ -52,6 +59,30 @@ fs::path bagOf(const Parameters& parameters) {
 fs::path folderOf(const Parameters& parameters, const session::ScenarioOptions& options) {
   const std::string given = parameters.text("results");
   return resultFolder(given.empty() ? "" : fs::path(parameters.text("folder")) / given, options);
+}
+
+/// A service of a session that would change it, whatever it is asked.
+template <class Service>
+ros::ServiceServer refusing(ros::NodeHandle& node, const std::string& name) {
+  const boost::function<bool(typename Service::Request&, typename Service::Response&)> refuse =
+      [](typename Service::Request&, typename Service::Response& response) {
+        response.result.result = msgs::Result::RESULT_FEATURE_UNSUPPORTED;
+        response.result.error_message =
+            "this is the replay of a bag: what was recorded does not change; steer a session "
+            "(session.launch), or repeat this one with other steering (steering:=FILE)";
+        return true;
+      };
+  return node.advertiseService(name, refuse);
+}
+
+std::vector<ros::ServiceServer> refusals(ros::NodeHandle& node) {
+  return {refusing<msgs::SetSimulationState>(node, "set_simulation_state"),
+          refusing<msgs::StepSimulation>(node, "step_simulation"),
+          refusing<msgs::ResetSimulation>(node, "reset_simulation"),
+          refusing<msgs::SpawnEntity>(node, "spawn_entity"),
+          refusing<msgs::DeleteEntity>(node, "delete_entity"),
+          refusing<msgs::SetEntityState>(node, "set_entity_state"),
+          refusing<msgs::SteerSession>(node, "steer")};
 }
 
 /// Who takes part in a replay: the metrics node works, and listens to what the others said.
@@ -103,6 +134,7 @@ void ReplayNode::advertise() {
   acks_ = gate_.subscribe<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
                                          {siblingNode(kMetricsNode)},
                                          [this](const auto& ack) { participants_.note(*ack); });
+  refusals_ = refusals(node_);
 }
 
 void ReplayNode::publishSession() {

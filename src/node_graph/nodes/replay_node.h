@@ -68,6 +68,7 @@ class ReplayNode {
   HeartbeatPublisher heartbeat_;
   std::map<Topic, ros::Publisher> topics_;
   ros::Subscriber acks_;
+  std::vector<ros::ServiceServer> refusals_;  ///< of those who would steer it
   Display display_;
   ::e2e_cdiff::TrafficSnapshot::ConstPtr last_;  ///< published
   Clock::time_point begin_;
