@@ -86,7 +86,11 @@ int Participant::run() {
 int Participant::standBy() {
   ROS_DEBUG("%s: the session does not need this node", name_.c_str());
   session_input_.shutdown();
-  while (ros::ok() && !stop_.raised() && !simulatorGone() && !simulatorSilent()) spin();
+  openDiagnostics();
+  while (ros::ok() && !stop_.raised() && !simulatorGone() && !simulatorSilent()) {
+    diagnostics_->update();
+    spin();
+  }
   return core::ExitCode::kPassed;
 }
 
@@ -113,8 +117,24 @@ std::optional<Ending> Participant::unstartedEnding() {
   return std::nullopt;
 }
 
+/// One line in /diagnostics, once a second of the node's time.
+void Participant::openDiagnostics() {
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
+  diagnostics_->setHardwareID("session");
+  diagnostics_->add(subject(), [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    const bool needed = graph_.has(name_);
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK,
+                   needed ? "takes part" : "stands by: the session does not need it");
+    if (!needed) return;
+    status.add("last tick", lastTick());
+    status.add("ticks that wait", snapshots_.size());
+    diagnose(status);
+  });
+}
+
 int Participant::runSession() {
   startSession(*session_);
+  openDiagnostics();
   const session::ScenarioOptions options = optionsFromMsg(*session_);
   simulation_step_ = options.simulation_step;
   lead_ = static_cast<std::uint64_t>(
@@ -125,6 +145,7 @@ int Participant::runSession() {
   while (!handleQueue()) {
     if (const auto ending = unexpectedEnding()) return leave(*ending);
     report();
+    diagnostics_->update();
     spin();
   }
   return leave(Ending::kFinalSnapshot);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/program.h"
+#include "diagnostic_updater/diagnostic_updater.h"
 #include "e2e_cdiff/Heartbeat.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TickAck.h"
@@ -60,6 +61,10 @@ class Participant {
   virtual bool ready(const ::e2e_cdiff::TrafficSnapshot&) const { return true; }
   /// Whether the node leaves decisions out when it falls behind the wall clock.
   virtual bool leavesOut() const { return false; }
+  /// What the node's line of /diagnostics is about, after its name.
+  virtual std::string subject() const = 0;
+  /// Adds the node's own facts to it.
+  virtual void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) = 0;
   /// The session is over; returns the exit code.
   virtual int conclude(Ending ending) = 0;
   /// The traffic simulator has ended, or hangs, before it published a session; returns the exit
@@ -102,6 +107,7 @@ class Participant {
   std::optional<Ending> unstartedEnding();
   int standBy();
   int runSession();
+  void openDiagnostics();
   std::optional<Ending> unexpectedEnding();
   void endSilentSimulator();
   int leave(Ending ending);
@@ -138,6 +144,7 @@ class Participant {
   ros::WallTime reported_at_;  ///< when this node last said how it stands
   bool final_handled_ = false;
   bool over_ = false;
+  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };
 
 /// What metrics and recorder have in common: they listen to all answers of a tick and take it when

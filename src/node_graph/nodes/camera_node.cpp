@@ -75,6 +75,7 @@ void CameraNode::show(int slot, const traffic::TrafficSnapshot& snapshot,
     output.infos.publish(
         boost::make_shared<const sensor_msgs::CameraInfo>(toCameraInfoMsg(camera, image->header)));
     output.images.publish(image);
+    ++images_;
   }
 }
 

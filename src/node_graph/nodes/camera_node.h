@@ -28,6 +28,10 @@ class CameraNode : public Participant {
     return !graph().imagesOfCbvs() || selections_.count(snapshot.tick) > 0;
   }
   bool leavesOut() const override { return graph().paced; }
+  std::string subject() const override { return "images"; }
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) override {
+    status.add("images", images_);
+  }
   int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
@@ -44,6 +48,7 @@ class CameraNode : public Participant {
   std::unique_ptr<session::VehicleCameras> cameras_;
   std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
   std::map<std::pair<int, std::string>, Output> outputs_;                    ///< by slot and camera
+  std::uint64_t images_ = 0;                                                 ///< published
 };
 
 }  // namespace cdiff::node_graph

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/nodes/cbv_identification_node.h"
 
+#include "core/text.h"
 #include "node_graph/messages/channel_conversions.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
@@ -10,8 +11,7 @@
 namespace cdiff::node_graph {
 
 void CbvIdentificationNode::startSession(const msgs::SessionInfo& info) {
-  const session::ScenarioOptions options = optionsFromMsg(info);
-  options_ = options.cbv.inMode(options.mode);
+  options_ = optionsFromMsg(info);
   network_.emplace(map::RoadNetwork::fromText(info.network_text, info.network_source));
   graph_.emplace(*network_);
   selections_ = advertise<msgs::CbvSelection>(ChannelId::kSelection);
@@ -23,7 +23,8 @@ void CbvIdentificationNode::takeRoute(const nav_msgs::Path& path) {
   if (selector_ || path.poses.empty())
     return;  // an empty path means "no route"; the session's route never changes
   ego_route_ = map::matchRoute(*network_, fromMsg(path));
-  selector_ = std::make_unique<cbv::CbvSelector>(options_, graph().max_cbv, *graph_, ego_route_);
+  selector_ = std::make_unique<cbv::CbvSelector>(options_.cbv, graph().max_cbv, *graph_, ego_route_,
+                                                 options_.mode);
 }
 
 std::string CbvIdentificationNode::waitingFor() const {
@@ -33,12 +34,21 @@ std::string CbvIdentificationNode::waitingFor() const {
 bool CbvIdentificationNode::handle(const Snapshot& message, bool) {
   const traffic::TrafficSnapshot snapshot = fromMsg(*message);
   if (snapshot.decision_tick) {
-    selections_.publish(boost::make_shared<const msgs::CbvSelection>(
-        toMsg(selector_->update(snapshot), snapshot.time, *network_)));
+    newest_ = selector_->update(snapshot);
+    selections_.publish(
+        boost::make_shared<const msgs::CbvSelection>(toMsg(newest_, snapshot.time, *network_)));
   } else {
     selector_->observe(snapshot);
   }
   return true;
+}
+
+void CbvIdentificationNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  std::vector<std::string> chosen;
+  for (const cbv::CbvAssignment& assignment : newest_.assignments)
+    chosen.push_back(assignment.vehicle_id);
+  status.add("CBVs", core::joinText(chosen, ", "));
+  status.add("candidates rejected", newest_.rejected.size());
 }
 
 }  // namespace cdiff::node_graph

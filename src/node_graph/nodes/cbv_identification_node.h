@@ -22,16 +22,19 @@ class CbvIdentificationNode : public Participant {
   void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   std::string waitingFor() const override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
+  std::string subject() const override { return "selection"; }
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) override;
   int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
   void takeRoute(const nav_msgs::Path& path);
-  cbv::CbvOptions options_;
+  session::ScenarioOptions options_;
   std::optional<map::RoadNetwork> network_;
   std::optional<map::LaneGraph> graph_;
   map::Route ego_route_;
   std::unique_ptr<cbv::CbvSelector> selector_;
   ros::Publisher selections_;
+  cbv::CbvSelection newest_;  ///< of the newest decision
 };
 
 }  // namespace cdiff::node_graph

@@ -75,9 +75,6 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
   map_output_.publish(mapMarkers(*setup_));
   advertiseFigures();
   listenToAnswers(Party::kMetrics, setup_->options());
-  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
-  diagnostics_->setHardwareID(setup_->options().name);
-  diagnostics_->add("session", this, &MetricsNode::diagnose);
 }
 
 void MetricsNode::advertiseFigures() {
@@ -124,13 +121,11 @@ void MetricsNode::show(const traffic::TrafficSnapshot& snapshot,
       figures_.at(figure.topic).publish(number);
     }
   }
-  diagnostics_->update();
 }
 
 void MetricsNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const double wall = wallSeconds();
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, traffic::toText(last_.status));
-  status.add("tick", last_.tick);
   status.add("simulated seconds", core::formatFixed(last_.time, 2));
   status.add("real-time factor", core::formatFixed(wall > 0.0 ? last_.time / wall : 0.0, 2));
   status.add("vehicles", last_.vehicles.size());

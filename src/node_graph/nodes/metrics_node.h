@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 
-#include "diagnostic_updater/diagnostic_updater.h"
 #include "node_graph/lockstep/participant.h"
 #include "node_graph/messages/display.h"
 #include "node_graph/messages/markers.h"
@@ -32,13 +31,14 @@ class MetricsNode : public Observer {
   bool handle(const Snapshot& snapshot, bool superseded) override;
   int conclude(Ending ending) override;
   int concludeUnstarted(Ending ending) override;
+  std::string subject() const override { return "session"; }
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) override;
 
  private:
   using Clock = std::chrono::steady_clock;
   void note(const std::vector<session::PlannerLatency>& latencies);
   void advertiseFigures();
   void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   double wallSeconds() const;
   int finishVideo(int exit_code);
 
@@ -56,7 +56,6 @@ class MetricsNode : public Observer {
   ros::Publisher marker_output_;
   ros::Publisher map_output_;
   std::map<Topic, ros::Publisher> figures_;  ///< of CBVs
-  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };
 
 }  // namespace cdiff::node_graph

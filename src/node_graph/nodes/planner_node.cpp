@@ -85,6 +85,7 @@ void SeeingParticipant::listenToImages(int slot) {
 void EgoPlannerNode::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   planner_ = setup_->makeEgoPlanner();
+  statistics_ = PlannerStatistics(setup_->options().decision_period);
   images() = ImageInbox(setup_->rigs(), setup_->options().simulation_step);
   controls_ = advertise<msgs::ControlAction>(ChannelId::kEgoControl);
   markers_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kPerceptionMarkers);
@@ -115,6 +116,7 @@ bool EgoPlannerNode::handle(const Snapshot& message, bool superseded) {
   const PlannerDecision decision = graph().ego_sees
                                        ? planSeeing(*planner_, snapshot, tasks, images())
                                        : planBlind(*planner_, snapshot, tasks);
+  statistics_.observe(decision);
   controls_.publish(shared(
       toMsg(decision.actions.front(), snapshot, {name, decision.latency_ms, decision.fault})));
   if (markers_.getNumSubscribers() > 0)
@@ -139,9 +141,6 @@ void CbvPlannerNode::startSession(const msgs::SessionInfo& info) {
   }
   markers_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kRolloutMarkers);
   listenToInputs();
-  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
-  diagnostics_->setHardwareID(options.name);
-  diagnostics_->add("planner", &statistics_, &PlannerStatistics::diagnose);
 }
 
 void CbvPlannerNode::listenToInputs() {
@@ -203,7 +202,6 @@ void CbvPlannerNode::plan(const traffic::TrafficSnapshot& snapshot,
                                        : planBlind(*planner_, snapshot, tasks);
   statistics_.observe(decision);
   images().forgetBefore(snapshot.tick + 1);
-  diagnostics_->update();
   publish(snapshot, decision);
   warnOf("cbv:" + setup_->options().cbv_planner, decision);
 }

@@ -73,6 +73,10 @@ class EgoPlannerNode : public SeeingParticipant {
   bool handle(const Snapshot& snapshot, bool superseded) override;
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
   bool leavesOut() const override { return graph().paced; }
+  std::string subject() const override { return "planner"; }
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) override {
+    statistics_.diagnose(status);
+  }
   int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
@@ -81,6 +85,7 @@ class EgoPlannerNode : public SeeingParticipant {
   std::unique_ptr<planning::Planner> planner_;
   ros::Publisher controls_;
   ros::Publisher markers_;
+  PlannerStatistics statistics_;
 };
 
 /// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in (and
@@ -97,6 +102,10 @@ class CbvPlannerNode : public SeeingParticipant {
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
   void arrived(const ::e2e_cdiff::TrafficSnapshot& snapshot) override;
   bool leavesOut() const override { return graph().paced; }
+  std::string subject() const override { return "planner"; }
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) override {
+    statistics_.diagnose(status);
+  }
   int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
@@ -117,7 +126,6 @@ class CbvPlannerNode : public SeeingParticipant {
   std::map<Topic, ros::Publisher> answers_;
   ros::Publisher markers_;
   PlannerStatistics statistics_;
-  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };
 
 }  // namespace cdiff::node_graph

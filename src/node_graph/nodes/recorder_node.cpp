@@ -52,9 +52,14 @@ bool RecorderNode::handle(const Snapshot& snapshot, bool superseded) {
   TickMessages messages = answers().messages(snapshot->tick);
   messages.add(ChannelId::kTraffic, snapshot);
   bag_->write(messages);
+  ++written_;
   forgetUntil(snapshot->tick);
   waiting_since_ = {};
   return true;
+}
+
+void RecorderNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.add("ticks written", written_);
 }
 
 int RecorderNode::conclude(Ending ending) {

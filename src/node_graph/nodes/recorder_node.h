@@ -21,6 +21,8 @@ class RecorderNode : public Observer {
   void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   std::string waitingFor() const override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
+  std::string subject() const override { return "bag"; }
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) override;
   int conclude(Ending ending) override;
 
  private:
@@ -29,6 +31,7 @@ class RecorderNode : public Observer {
   std::unique_ptr<BagFile> bag_;
   bool has_route_ = false;
   std::optional<std::uint64_t> acknowledged_;  ///< last tick
+  std::uint64_t written_ = 0;                  ///< ticks
   ros::WallTime waiting_since_;
 };
 
