@@ -29,7 +29,7 @@ def on_traffic(traffic):
 
 
 rospy.init_node("ackermann_ego")
-commands = rospy.Publisher("/ego/ackermann", AckermannCommand, queue_size=10)
-route = rospy.wait_for_message("/ego/route", Path)
-rospy.Subscriber("/traffic", TrafficSnapshot, on_traffic, tcp_nodelay=True)  # else TCP holds small messages back
+commands = rospy.Publisher("ego/ackermann", AckermannCommand, queue_size=10)
+route = rospy.wait_for_message("ego/route", Path)
+rospy.Subscriber("traffic", TrafficSnapshot, on_traffic, tcp_nodelay=True)  # else TCP holds small messages back
 rospy.spin()

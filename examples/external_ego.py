@@ -27,7 +27,7 @@ def on_traffic(traffic):
 
 
 rospy.init_node("external_ego")
-controls = rospy.Publisher("/ego/control", ControlAction, queue_size=10)
-route = rospy.wait_for_message("/ego/route", Path)
-rospy.Subscriber("/traffic", TrafficSnapshot, on_traffic, tcp_nodelay=True)  # else TCP holds small messages back
+controls = rospy.Publisher("ego/control", ControlAction, queue_size=10)
+route = rospy.wait_for_message("ego/route", Path)
+rospy.Subscriber("traffic", TrafficSnapshot, on_traffic, tcp_nodelay=True)  # else TCP holds small messages back
 rospy.spin()

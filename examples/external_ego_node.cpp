@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "external_ego_node");
   ros::NodeHandle node;
   nav_msgs::Path route;
-  ros::Publisher controls = node.advertise<e2e_cdiff::ControlAction>("/ego/control", 10);
+  ros::Publisher controls = node.advertise<e2e_cdiff::ControlAction>("ego/control", 10);
   const boost::function<void(const nav_msgs::Path&)> on_route = [&](const nav_msgs::Path& path) {
     route = path;
   };
@@ -54,10 +54,10 @@ int main(int argc, char** argv) {
         action.header.stamp = traffic.header.stamp;
         controls.publish(action);
       };
-  const ros::Subscriber route_input = node.subscribe<nav_msgs::Path>("/ego/route", 1, on_route);
+  const ros::Subscriber route_input = node.subscribe<nav_msgs::Path>("ego/route", 1, on_route);
   const auto at_once =
       ros::TransportHints().tcpNoDelay();  // else TCP holds small messages back for milliseconds
   const ros::Subscriber traffic_input =
-      node.subscribe<e2e_cdiff::TrafficSnapshot>("/traffic", 10, on_traffic, nullptr, at_once);
+      node.subscribe<e2e_cdiff::TrafficSnapshot>("traffic", 10, on_traffic, nullptr, at_once);
   ros::spin();
 }

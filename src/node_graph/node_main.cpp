@@ -3,6 +3,7 @@
 #include "node_graph/node_main.h"
 
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <future>
@@ -43,10 +44,13 @@ int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
 
 /// The nodes follow the ticks, and none but the metrics node (which stamps /diagnostics) asks ROS
 /// for the time: /clock would wake each of them once more at every tick.
+/// In a namespace nobody makes a clock.
 void initWithoutClock(int argc, char** argv, const std::string& name) {
+  const char* space = std::getenv("ROS_NAMESPACE");  // set by roslaunch
+  const bool has_clock = space == nullptr || std::string(space).size() < 2;
   std::string no_clock = "/use_sim_time:=/e2e_cdiff_use_sim_time";
   std::vector<char*> arguments(argv, argv + argc);
-  if (name != kMetricsNode) arguments.push_back(no_clock.data());
+  if (name != kMetricsNode || !has_clock) arguments.push_back(no_clock.data());
   int count = static_cast<int>(arguments.size());
   ros::init(count, arguments.data(), name, ros::init_options::NoSigintHandler);
 }

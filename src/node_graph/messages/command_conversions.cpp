@@ -43,9 +43,9 @@ planning::VelocityCommand fromMsg(const geometry_msgs::Twist& message) {
 }
 
 std::vector<planning::TimedPlace> trajectoryFrom(const nav_msgs::Path& message) {
-  if (message.header.frame_id != kMapFrame) {
+  if (message.header.frame_id != frameId(kMapFrame)) {
     throw core::InputError("the trajectory's frame is '" + message.header.frame_id +
-                           "'; expected '" + kMapFrame + "'");
+                           "'; expected '" + frameId(kMapFrame) + "'");
   }
   std::vector<planning::TimedPlace> places;
   for (const geometry_msgs::PoseStamped& pose : message.poses)

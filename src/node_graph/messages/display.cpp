@@ -26,7 +26,7 @@ geometry_msgs::Quaternion toQuaternion(double heading) {
   return quaternion;
 }
 
-std::string frameOf(const traffic::Vehicle& vehicle) { return vehicle.id + "/base_link"; }
+std::string frameOf(const traffic::Vehicle& vehicle) { return frameId(vehicle.id + "/base_link"); }
 
 geometry_msgs::TransformStamped transformBetween(const std::string& parent,
                                                  const std::string& child, double time) {
@@ -71,7 +71,7 @@ geometry_msgs::TransformStamped optical(const traffic::Vehicle& vehicle, double 
 nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time) {
   nav_msgs::Odometry message;
   message.header.stamp = toStamp(time);
-  message.header.frame_id = kMapFrame;
+  message.header.frame_id = frameId(kMapFrame);
   message.child_frame_id = frameOf(vehicle);
   message.pose.pose.position.x = vehicle.state.position.x();
   message.pose.pose.position.y = vehicle.state.position.y();
@@ -90,7 +90,7 @@ Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot) {
   Transforms transforms;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) continue;
-    auto transform = transformBetween(kMapFrame, frameOf(vehicle), snapshot.time);
+    auto transform = transformBetween(frameId(kMapFrame), frameOf(vehicle), snapshot.time);
     transform.transform.translation.x = vehicle.state.position.x();
     transform.transform.translation.y = vehicle.state.position.y();
     transform.transform.translation.z = vehicle.state.elevation;
@@ -101,7 +101,8 @@ Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot) {
 }
 
 std::string cameraFrame(const std::string& vehicle_id, const std::string& camera) {
-  return vehicle_id + "/camera" + (camera == rendering::kFrontCamera ? "" : "_" + camera);
+  const std::string suffix = camera == rendering::kFrontCamera ? "" : "_" + camera;
+  return frameId(vehicle_id + "/camera" + suffix);
 }
 
 Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,

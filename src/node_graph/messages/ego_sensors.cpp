@@ -30,7 +30,7 @@ msgs::TrackedObject objectOf(const traffic::Vehicle& vehicle, const traffic::Veh
   return object;
 }
 
-std::string laserFrame(const std::string& vehicle_id) { return vehicle_id + "/laser"; }
+std::string laserFrame(const std::string& vehicle_id) { return frameId(vehicle_id + "/laser"); }
 
 }  // namespace
 
@@ -38,7 +38,7 @@ geometry_msgs::TransformStamped laserMount(const std::string& vehicle_id, double
                                            double time) {
   geometry_msgs::TransformStamped mount;
   mount.header.stamp = toStamp(time);
-  mount.header.frame_id = vehicle_id + "/base_link";
+  mount.header.frame_id = frameId(vehicle_id + "/base_link");
   mount.child_frame_id = laserFrame(vehicle_id);
   mount.transform.translation.z = height;
   mount.transform.rotation.w = 1.0;
@@ -48,7 +48,7 @@ geometry_msgs::TransformStamped laserMount(const std::string& vehicle_id, double
 msgs::TrackedObjects toObjectsMsg(const traffic::TrafficSnapshot& snapshot, double range) {
   msgs::TrackedObjects objects;
   objects.header.stamp = toStamp(snapshot.time);
-  objects.header.frame_id = kMapFrame;
+  objects.header.frame_id = frameId(kMapFrame);
   objects.tick = snapshot.tick;
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego == nullptr) return objects;
@@ -111,7 +111,7 @@ sensor_msgs::PointCloud2 toPointCloudMsg(const rendering::RangeSensor& sensor,
   const std::vector<Eigen::Vector3f> points = sensor.points(scan);
   sensor_msgs::PointCloud2 message;
   message.header.stamp = toStamp(time);
-  message.header.frame_id = vehicle_id + "/base_link";
+  message.header.frame_id = frameId(vehicle_id + "/base_link");
   sensor_msgs::PointCloud2Modifier modifier(message);
   modifier.setPointCloud2FieldsByString(1, "xyz");
   modifier.resize(points.size());

@@ -38,7 +38,7 @@ constexpr Color kLabelColor{1.0F, 1.0F, 1.0F, 1.0F};
 
 Marker makeMarker(const std::string& marker_namespace, int id, int type, const Color& color) {
   Marker marker;
-  marker.header.frame_id = kMapFrame;
+  marker.header.frame_id = frameId(kMapFrame);
   marker.ns = marker_namespace;
   marker.id = id;
   marker.type = type;

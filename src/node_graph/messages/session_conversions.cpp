@@ -32,7 +32,7 @@ msgs::Measure toMsg(const std::string& name, const metrics::Measure& measure) {
 
 msgs::SessionInfo toMsg(const session::SessionSetup& setup) {
   msgs::SessionInfo message;
-  message.header.frame_id = kMapFrame;
+  message.header.frame_id = frameId(kMapFrame);
   message.scenario_yaml = core::dumpOptions(setup.options());
   message.seed = setup.options().seed;
   message.network_text = setup.import().text;
@@ -75,11 +75,11 @@ std::vector<Eigen::Vector3d> routeFromMsg(const msgs::SessionInfo& message) {
 
 nav_msgs::Path toPathMsg(const map::Route& route) {
   nav_msgs::Path message;
-  message.header.frame_id = kMapFrame;
+  message.header.frame_id = frameId(kMapFrame);
   const geometry::Polyline& path = route.path();
   for (std::size_t i = 0; i < path.points().size(); ++i) {
     geometry_msgs::PoseStamped pose;
-    pose.header.frame_id = kMapFrame;
+    pose.header.frame_id = frameId(kMapFrame);
     pose.pose.position.x = path.points()[i].x();
     pose.pose.position.y = path.points()[i].y();
     pose.pose.position.z = path.points()[i].z();
@@ -103,7 +103,7 @@ msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
                          const traffic::TrafficSnapshot& snapshot) {
   msgs::MetricReport message;
   message.header.stamp = toStamp(snapshot.time);
-  message.header.frame_id = kMapFrame;
+  message.header.frame_id = frameId(kMapFrame);
   message.tick = snapshot.tick;
   message.ttc_2d = measures.ttc_2d.value_or(kUndefined);
   message.nearest_distance = measures.nearest_distance.value_or(kUndefined);
@@ -177,7 +177,7 @@ msgs::GuidanceReport toGuidanceMsg(const std::vector<planning::PlannedAction>& a
                                    const traffic::TrafficSnapshot& snapshot) {
   msgs::GuidanceReport message;
   message.header.stamp = toStamp(snapshot.time);
-  message.header.frame_id = kMapFrame;
+  message.header.frame_id = frameId(kMapFrame);
   message.tick = snapshot.tick;
   for (const planning::PlannedAction& action : actions)
     message.vehicles.push_back(toGuidanceMsg(action));
@@ -276,7 +276,7 @@ msgs::CbvSelection toMsg(const cbv::CbvSelection& selection, double time,
                          const map::RoadNetwork& network) {
   msgs::CbvSelection message;
   message.header.stamp = toStamp(time);
-  message.header.frame_id = kMapFrame;
+  message.header.frame_id = frameId(kMapFrame);
   message.tick = selection.tick;
   for (const cbv::CbvAssignment& assignment : selection.assignments) {
     message.assignments.push_back(toMsg(assignment, network));

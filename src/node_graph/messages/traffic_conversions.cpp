@@ -6,6 +6,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/messages/perceived_conversions.h"
+#include "ros/this_node.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -45,11 +46,16 @@ msgs::SteeringChange toMsg(const traffic::SteeringChange& change) {
 std_msgs::Header headerOf(const traffic::TrafficSnapshot& snapshot) {
   std_msgs::Header header;
   header.stamp = toStamp(snapshot.time);
-  header.frame_id = kMapFrame;
+  header.frame_id = frameId(kMapFrame);
   return header;
 }
 
 }  // namespace
+
+std::string frameId(const std::string& frame) {
+  const std::string& space = ros::this_node::getNamespace();
+  return space.size() < 2 ? frame : space.substr(1) + "/" + frame;
+}
 
 ros::Time toStamp(double seconds) { return ros::Time(seconds); }
 

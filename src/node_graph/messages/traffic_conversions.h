@@ -25,8 +25,11 @@ std::uint64_t nearestTick(const ros::Time& stamp, double simulation_step);
 
 namespace msgs = ::e2e_cdiff;
 
-/// Frame of every position in our messages.
+/// Frame of every position in our messages, where a session runs in no namespace.
 inline constexpr const char* kMapFrame = "map";
+/// A frame as this process publishes it: in the namespace /a with the prefix "a/", so that sessions
+/// share one tf.
+std::string frameId(const std::string& frame);
 
 /// Simulated time as a ROS stamp.
 ros::Time toStamp(double seconds);
