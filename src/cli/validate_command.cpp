@@ -70,7 +70,7 @@ bool validateOne(const std::string& scenario_name, const ValidateArguments& argu
     const session::SessionSetup setup(options);
     const session::SessionControl control(setup);
     if (options.ego_planner != planning::kExternalPlanner) setup.makeEgoPlanner();
-    setup.makeCbvPlanner();
+    if (options.cbv_planner != planning::kExternalPlanner) setup.makeCbvPlanner();
     describeScenario(setup, arguments, suite::sealedSuiteOf(scenario_name).has_value());
     if (arguments.print) std::cout << scenarioKeys(options, arguments.group);
     return true;
@@ -94,11 +94,10 @@ void printPlanners() {
               << planners::sourceOf(planner->name) << "\n    " << planner->title << ": "
               << planner->help << "\n";
   }
-  std::cout
-      << std::left << std::setw(17) << planning::kExternalPlanner << std::setw(10) << "ego"
-      << std::setw(9) << "-" << std::setw(8) << "no"
-      << "this package\n"
-      << "    a node of your own that publishes on the ego's control topic (roslaunch only)\n";
+  std::cout << std::left << std::setw(17) << planning::kExternalPlanner << std::setw(10)
+            << "ego CBVs" << std::setw(9) << "-" << std::setw(8) << "no"
+            << "this package\n"
+            << "    a node of your own that publishes on the control topics (roslaunch only)\n";
 }
 
 }  // namespace

@@ -97,9 +97,9 @@ std::string changedInputs(const InputHashes& before, const InputHashes& now) {
 namespace {
 
 /// The names are checked as those of any scenario.
-void checkEgoPlanner(const std::string& name) {
+void checkPlanner(const std::string& key, const std::string& name) {
   if (name == planning::kExternalPlanner)
-    throw InputError("ego_planner 'external' needs the node graph; a batch cannot run it");
+    throw InputError(key + " 'external' needs the node graph; a batch cannot run it");
 }
 
 /// Builds the product of all factors.
@@ -194,7 +194,8 @@ class RunPlanner {
       session::SessionRequest request = level.request;
       if (!seeds.empty()) request.seed = seeds.front();
       session::ScenarioOptions options = session::resolveRequest(request);
-      checkEgoPlanner(options.ego_planner);
+      checkPlanner("ego_planner", options.ego_planner);
+      checkPlanner("cbv_planner", options.cbv_planner);
       session::requireLockstep(options);
       std::vector<PlannedRun> runs = {runOf(level.label, options)};
       // An override of the seed ranks above the matrix's seeds.

@@ -24,7 +24,7 @@ std::string nodeOf(Party party, const SessionGraph& graph) {
     case Party::kEgoPlanner:
       return graph.external_ego ? "the external ego planner" : kEgoPlannerNode;
     case Party::kCbvPlanner:
-      return graph.cbv_planner_node;
+      return graph.external_cbvs ? "the external CBV planner" : graph.cbv_planner_node;
     case Party::kCamera:
       return kCameraNode;
     case Party::kMetrics:
@@ -60,6 +60,7 @@ std::vector<std::string> neededNodes(const session::ScenarioOptions& options,
 
 /// What follows from the scenario; who takes part says which program runs the CBVs' planner.
 void addCbvPlanner(const session::ScenarioOptions& options, SessionGraph& graph) {
+  graph.external_cbvs = options.cbv_planner == planning::kExternalPlanner;
   graph.cbvs_see = planners::seesImages(options.cbv_planner);
   graph.cbvs_guided = planners::canBeGuided(options.cbv_planner);
   graph.cbv_planner_node = cbvPlannerNode(options);
@@ -85,9 +86,12 @@ SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest
   graph.show_cameras = request.show_cameras;
   graph.paced = options.real_time_factor > 0.0;
   graph.rigs = session::VehicleRigs(options);
+  const bool external_cbvs = options.cbv_planner == planning::kExternalPlanner;
   for (const std::string& node :
        participants.empty() ? neededNodes(options, request) : participants) {
-    if (node != kEgoPlannerNode || !graph.external_ego) graph.participants.push_back(node);
+    const bool of_user = (node == kEgoPlannerNode && graph.external_ego) ||
+                         (node == cbvPlannerNode(options) && external_cbvs);
+    if (!of_user) graph.participants.push_back(node);
   }
   addCbvPlanner(options, graph);
   return graph;

@@ -41,7 +41,8 @@ struct SessionGraph {
   std::vector<std::string> participants;  ///< nodes that the session counts on
   int max_cbv = 0;                        ///< slots
   bool external_ego = false;              ///< the user's own node drives the ego
-  std::string ego_command = "control";    ///< how it commands (ego.command)
+  bool external_cbvs = false;             ///< the user's own nodes drive the CBVs
+  std::string ego_command = "control";    ///< how the external ego commands (ego.command)
   bool ego_sees = false;                  ///< the ego's planner needs images
   bool show_cameras = false;              ///< images of ego and CBVs even where no planner sees
   bool paced = false;                     ///< the wall clock rules: late answers are replaced
@@ -53,9 +54,14 @@ struct SessionGraph {
   bool has(const std::string& node) const;
   /// Whether an external ego commands in this way.
   bool commandedBy(const char* command) const { return external_ego && ego_command == command; }
+  /// Whether a node of the user's own drives the vehicles of a part.
+  bool external(Party party) const {
+    return (party == Party::kEgoPlanner && external_ego) ||
+           (party == Party::kCbvPlanner && external_cbvs);
+  }
   /// Whether the traffic simulator publishes which answers counted at each decision; observers take
   /// the controls from there.
-  bool recordsDecisions() const { return paced || external_ego; }
+  bool recordsDecisions() const { return paced || external_ego || external_cbvs; }
   /// Whether camera_node publishes images of the slots, or of the ego.
   bool imagesOfCbvs() const { return has(kCameraNode) && (cbvs_see || show_cameras); }
   bool imagesOfEgo() const { return has(kCameraNode) && (ego_sees || show_cameras); }
@@ -64,7 +70,8 @@ struct SessionGraph {
   bool egoPlansFromImages() const { return has(kCameraNode) && ego_sees; }
 };
 
-/// The node that plays a part; "the external ego planner" for a node of the user's own. Throws
+/// The node that plays a part; for a node of the user's own "the external ego planner" or "the
+/// external CBV planner". Throws
 /// std::logic_error for kParticipants, which are many.
 std::string nodeOf(Party party, const SessionGraph& graph);
 

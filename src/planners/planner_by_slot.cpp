@@ -72,14 +72,14 @@ planning::NetworkFacts networkOf(const Descriptors& members,
   return joined;
 }
 
-/// Names of the planners with this role, sorted.
+/// Names of the planners with this role, sorted; last the user's own node.
 std::vector<std::string> plannersFor(Role role) {
   std::vector<std::string> names;
   for (const PlannerDescriptor* planner : registeredPlanners()) {
     if (role == Role::kEgo ? planner->drives_ego : planner->drives_cbv)
       names.push_back(planner->name);
   }
-  if (role == Role::kEgo) names.emplace_back(planning::kExternalPlanner);
+  names.emplace_back(planning::kExternalPlanner);
   return names;
 }
 
@@ -135,11 +135,16 @@ void requirePlanner(const std::string& key, const std::string& name, Role role) 
   const bool by_slot = role == Role::kCbv && name.find('+') != std::string::npos;
   if (!by_slot) return requireOnePlanner(place, name, role);
   const std::vector<std::string> members = planningMembers(name);
-  for (const std::string& member : members)
+  for (const std::string& member : members) {
+    if (member == planning::kExternalPlanner)
+      throw core::InputError(place + "; 'external' drives the CBVs of all slots: give it alone");
     requireOnePlanner(place + ": '" + member + "'", member, role);
+  }
   if (members.size() > 1 && core::joinText(members, "+") == name) return;
+  std::vector<std::string> possible = plannersFor(role);
+  possible.pop_back();
   throw core::InputError(place + "; expected names of planners by slot, joined by single '+', of " +
-                         core::joinText(plannersFor(role), ", "));
+                         core::joinText(possible, ", "));
 }
 
 PlannerDescriptor describeBySlot(const Descriptors& members) {

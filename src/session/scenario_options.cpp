@@ -188,8 +188,8 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
       method, {});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
   visitor.joinedTexts({"cbv_planner", "",
-                       "Planner of the CBVs; several, by slot, as [a, b] or a+b: slot k has the "
-                       "(k mod n)-th."},
+                       "Planner of the CBVs, or external; several, by slot, as [a, b] or a+b: "
+                       "slot k has the (k mod n)-th."},
                       cbv_planner, '+');
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
   visitor.group({"cbv", "", "CBV identification."}, cbv);
@@ -241,7 +241,9 @@ void ScenarioOptions::validate() const {
   planners::requirePlanner("ego_planner", ego_planner, planners::Role::kEgo);
   planners::requirePlanner("cbv_planner", cbv_planner, planners::Role::kCbv);
   validateCameras();
-  if (mode != "naturalistic" && !planners::canBeGuided(cbv_planner)) {
+  const bool attacks =
+      planners::canBeGuided(cbv_planner) || cbv_planner == planning::kExternalPlanner;
+  if (mode != "naturalistic" && !attacks) {
     throw UnfitCombination("key 'mode' is '" + mode +
                            "', which needs a CBV planner with guidance; cbv_planner '" +
                            cbv_planner + "' drives naturalistically only; expected one of " +

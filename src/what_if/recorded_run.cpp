@@ -95,6 +95,11 @@ void RecordedRun::readSession() {
                      core::formatNumber(scenario_.real_time_factor) +
                      "), so it cannot be repeated; run it again with real_time_factor 0");
   }
+  if (scenario_.cbv_planner == planning::kExternalPlanner) {
+    throw InputError(file +
+                     ": a node of the user's own drove the CBVs (cbv_planner external), and "
+                     "what_if cannot ask it again; give a session whose CBVs a planner drove");
+  }
   scenario_.at_most = 0.0;
   scenario_.video = false;
 }

@@ -42,7 +42,8 @@ msgs::ControlAction completed(const msgs::ControlAction& control, const Key& key
   answer.tick = snapshot.tick;
   answer.slot = key.first;
   answer.vehicle_id = key.second;
-  if (answer.planner.empty()) answer.planner = "ego:external";
+  if (answer.planner.empty())
+    answer.planner = key.first == kEgoSlot ? "ego:external" : "cbv:external";
   return answer;
 }
 
@@ -55,7 +56,7 @@ void setAction(msgs::DecidedVehicle& vehicle, const traffic::ControlAction& acti
 msgs::DecisionRecord emptyRecord(const msgs::TrafficSnapshot& snapshot) {
   msgs::DecisionRecord record;
   record.header.stamp = snapshot.header.stamp;
-  record.header.frame_id = kMapFrame;
+  record.header.frame_id = frameId(kMapFrame);
   record.tick = snapshot.tick;
   return record;
 }

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/lockstep/lockstep_pacer.h"
 
+#include <algorithm>
+
 #include "node_graph/lockstep/decision_tracker.h"
 #include "node_graph/messages/session_conversions.h"
 
@@ -9,14 +11,14 @@ namespace cdiff::node_graph {
 namespace {
 
 constexpr double kSendAgainAfter =
-    1.0;  // [s] of wall time without an answer of an external ego planner
+    1.0;  // [s] of wall time without an answer of an external planner
 
 }  // namespace
 
 void LockstepPacer::published(const Snapshot& snapshot) {
   published_ = snapshot;
   published_at_ = Clock::now();
-  recorded_ = !snapshot->decision_tick;
+  recorded_ = !snapshot->decision_tick || !session_.graph.recordsDecisions();
 }
 
 std::vector<Missing> LockstepPacer::missingAnswers() const {
@@ -42,7 +44,7 @@ std::vector<Missing> LockstepPacer::missingAtTick() const {
 
 std::optional<SessionEnd> LockstepPacer::wait() {
   const auto again = [this] { sendAgainForLateListener(); };
-  if (session_.graph.external_ego && !recorded_) {  // observers wait for the record
+  if (!recorded_) {  // observers wait for the record
     if (auto cause = session_.watch.waitFor([this] { return missingAnswers(); },
                                             session_.answer_limit, again))
       return cause;
@@ -54,8 +56,12 @@ std::optional<SessionEnd> LockstepPacer::wait() {
 /// A node of the user may connect while the first snapshot is sent; it gets the same snapshot
 /// again.
 void LockstepPacer::sendAgainForLateListener() {
-  if (!session_.graph.external_ego || secondsSince(published_at_) < kSendAgainAfter) return;
-  if (answers_.has(ChannelId::kEgoControl, published_->tick)) return;
+  if (secondsSince(published_at_) < kSendAgainAfter) return;
+  const std::vector<Topic> missing = answers_.missing(*published_);
+  const bool of_user = std::any_of(missing.begin(), missing.end(), [this](const Topic& topic) {
+    return session_.graph.external(topic.row().publisher);
+  });
+  if (!of_user) return;
   output_.publish_again(published_);
   published_at_ = Clock::now();
 }
@@ -73,7 +79,7 @@ TickInput LockstepPacer::advance() {
 
 /// The session goes on, or ends, with what has arrived.
 void LockstepPacer::close() {
-  if (session_.graph.external_ego && !recorded_)
+  if (!recorded_)
     publishRecord(
         boost::make_shared<const msgs::DecisionRecord>(punctualRecord(*published_, answers_)));
   recorded_ = true;

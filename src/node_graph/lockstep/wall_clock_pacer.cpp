@@ -22,11 +22,14 @@ WallClockPacer::WallClockPacer(const PacedSession& session, PacerOutput output)
 
 void WallClockPacer::take(const Topic& topic, const AnyMessage& message) {
   if (waitsForRollout(topic, message)) return;
+  if (topic.id == ChannelId::kCbvControl) cbvs_heard_at_ = Clock::now();
   const bool ego = topic.id == ChannelId::kEgoControl;
   if (ego) ego_heard_at_ = Clock::now();
   const std::uint64_t tick = answers_.add(topic, message, ego && published_ ? published_->tick : 0);
-  if (topic.id == ChannelId::kSelection)
+  if (topic.id == ChannelId::kSelection) {
     decisions_.arrived(DecisionTracker::kSelection, tick, elapsed());
+    if (messageAs<msgs::CbvSelection>(message)->assignments.empty()) cbvs_heard_at_ = Clock::now();
+  }
   if (ego || topic.id == ChannelId::kCbvControl) decisions_.arrived(topic.slot, tick, elapsed());
   const auto early = early_controls_.find(topic.slot);
   if (topic.id != ChannelId::kCbvRollout || early == early_controls_.end()) return;
@@ -38,7 +41,7 @@ void WallClockPacer::take(const Topic& topic, const AnyMessage& message) {
 /// that the next action of a plan is always that of the plan. The newest control of a slot is kept
 /// until then.
 bool WallClockPacer::waitsForRollout(const Topic& topic, const AnyMessage& message) {
-  if (topic.id != ChannelId::kCbvControl) return false;
+  if (topic.id != ChannelId::kCbvControl || session_.graph.external_cbvs) return false;
   early_controls_.erase(topic.slot);
   const bool waits =
       answers_.rollout(topic.slot, messageAs<msgs::ControlAction>(message)->tick) == nullptr;
@@ -82,6 +85,9 @@ std::vector<Missing> WallClockPacer::silentNodes(double seconds) const {
   if (session_.graph.external_ego && secondsSince(std::max(ego_heard_at_, begin_)) > seconds)
     missing.push_back({answererOf(ChannelId::kEgoControl, session_.graph),
                        "a command on " + egoCommandOf(session_.graph).name()});
+  if (session_.graph.external_cbvs && secondsSince(std::max(cbvs_heard_at_, begin_)) > seconds)
+    missing.push_back(
+        {answererOf({ChannelId::kCbvControl, 0}, session_.graph), "a command for any CBV"});
   return missing;
 }
 

@@ -46,6 +46,7 @@ class WallClockPacer : public Pacer {
   std::set<LatePlanner> late_planners_;       ///< of which one late answer is reported
   std::deque<Snapshot> unsettled_;            ///< from an open decision on
   Clock::time_point ego_heard_at_;            ///< last command of the external ego
+  Clock::time_point cbvs_heard_at_;           ///< last command for a CBV, or decision without CBVs
   Clock::time_point acknowledged_at_;         ///< last time that the observers came on
   std::uint64_t acknowledged_ = 0;            ///< tick that all of them had acknowledged then
 };

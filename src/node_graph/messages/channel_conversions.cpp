@@ -44,8 +44,9 @@ void checkShape(const sensor_msgs::Image& message, const ExpectedImage& expected
 void checkOrigin(const sensor_msgs::Image& message, const ExpectedImage& expected,
                  std::uint64_t tick) {
   const std::string frame = opticalFrame(expected.vehicle_id, expected.camera);
-  if (message.header.frame_id != frame) {
-    refuse(expected, "has frame '" + message.header.frame_id + "'; expected '" + frame + "'");
+  const std::string& found = message.header.frame_id;
+  if (found != frame && !core::endsWith(found, "/" + frame)) {  // recorded in a namespace
+    refuse(expected, "has frame '" + found + "'; expected '" + frame + "'");
   }
   if (toStamp(static_cast<double>(tick) * expected.simulation_step) != message.header.stamp) {
     refuse(expected, "has stamp " + core::formatFixed(message.header.stamp.toSec(), 9) +
@@ -192,7 +193,8 @@ void takeControl(const TakenMessage& taken, const TickReading&, Answer& answer) 
   answer.action = fromMsg(*control);
   answer.action.slot = slot;
   answer.action.vehicle_id = vehicle_id;
-  answer.planner = control->planner.empty() ? "ego:external" : control->planner;
+  answer.planner = control->planner;
+  if (answer.planner.empty()) answer.planner = slot == kEgoSlot ? "ego:external" : "cbv:external";
   answer.latency_ms = control->planner_latency_ms;
   answer.fault = control->fault;
 }

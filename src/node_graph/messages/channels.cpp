@@ -23,13 +23,16 @@ using Graph = SessionGraph;
 
 // Conditions.
 constexpr Condition kAlways = {"", [](const Graph&) { return true; }};
-constexpr Condition kPaced = {"with `real_time_factor`",
-                              [](const Graph& graph) { return graph.paced; }};
 constexpr Condition kRecordsDecisions = {
-    "where answers may be late or the ego is external",
+    "where answers may be late or a planner is external",
     [](const Graph& graph) { return graph.recordsDecisions(); }};
 constexpr Condition kNoRecords = {"where there is no decision record",
                                   [](const Graph& graph) { return !graph.recordsDecisions(); }};
+constexpr Condition kOwnCbvs = {"where the CBVs' planner is not external",
+                                [](const Graph& graph) { return !graph.external_cbvs; }};
+constexpr Condition kOwnCbvsPaced = {
+    "with `real_time_factor`, where the CBVs' planner is not external",
+    [](const Graph& graph) { return graph.paced && !graph.external_cbvs; }};
 constexpr Condition kGuided = {"where the CBVs' planner is guided",
                                [](const Graph& graph) { return graph.cbvs_guided; }};
 constexpr Condition kMeasured = {"where `metrics_node` takes part",
@@ -179,6 +182,7 @@ Rows tickRows() {
           .converted(nullptr, &takeDecision),
       Row::of<msgs::CbvSelection>(ChannelId::kSelection, "cbv/selection", Party::kIdentification,
                                   "Vehicle, conflict point and route of each occupied slot.")
+          .latched()
           .heardBy(Party::kSimulator)
           .heardBy(Party::kCamera, kCbvsShown)
           .heardBy(Party::kCbvPlanner)
@@ -218,8 +222,9 @@ Rows plannerRows() {
           Row::of<msgs::Rollout>(ChannelId::kCbvRollout, "cbv_K/rollout", Party::kCbvPlanner,
                                  "Planned states and actions; empty where the planner makes none.")
               .vehicle()
-              .heardBy(Party::kSimulator, kPaced)
-              .observed()
+              .where(kOwnCbvs)
+              .heardBy(Party::kSimulator, kOwnCbvsPaced)
+              .observed(kOwnCbvs)
               .answer(Need::kVehicle)
               .converted(&makeRollout, &takeRollout),
           Row::of<msgs::GuidanceReport>(ChannelId::kGuidance, "cbv/guidance", Party::kCbvPlanner,

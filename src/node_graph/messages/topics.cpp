@@ -94,7 +94,7 @@ bool replayed(const Channel& channel, const SessionGraph& graph) {
 std::vector<std::string> publishersOf(const Topic& topic, const SessionGraph& graph) {
   const Channel& row = topic.row();
   if (row.publisher == Party::kParticipants) return graph.participants;
-  if (row.publisher == Party::kEgoPlanner && graph.external_ego) return {};
+  if (graph.external(row.publisher)) return {};
   const std::string node = nodeOf(row.publisher, graph);
   if (row.use != Use::kAnswer || row.publisher == Party::kSimulator) return {node};
   return {node, kTrafficSimulatorNode};

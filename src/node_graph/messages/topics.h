@@ -60,7 +60,7 @@ std::vector<std::string> listeners(const Topic& topic, const SessionGraph& graph
 
 /// The nodes, without namespace, whose messages are accepted on a topic: its publisher, and the
 /// traffic simulator, under whose name a replay publishes. Empty where the first sender is
-/// accepted, whoever it is (the control of an external ego).
+/// accepted, whoever it is (the controls of external planners).
 std::vector<std::string> publishersOf(const Topic& topic, const SessionGraph& graph);
 
 /// Whether a replay publishes a channel in place of its publisher: the answers of other nodes, and
@@ -68,7 +68,7 @@ std::vector<std::string> publishersOf(const Topic& topic, const SessionGraph& gr
 bool replayed(const Channel& channel, const SessionGraph& graph);
 
 /// Name for error texts of the node that answers on a topic: "cbv_planner_node", or "the external
-/// ego planner".
+/// ego planner", or "the external CBV planner".
 std::string answererOf(const Topic& topic, const SessionGraph& graph);
 
 /// Whether the node that plays a part in the session listens to a channel.

@@ -50,7 +50,7 @@ msgs::EntityState stateOf(const msgs::Vehicle& vehicle, const msgs::TrafficSnaps
   msgs::EntityState state;
   const double heading = vehicle.state.heading;
   state.header.stamp = snapshot.header.stamp;
-  state.header.frame_id = kMapFrame;
+  state.header.frame_id = frameId(kMapFrame);
   state.pose.position.x = vehicle.state.x;
   state.pose.position.y = vehicle.state.y;
   state.pose.position.z = vehicle.state.z;
@@ -168,12 +168,8 @@ void SessionServices::setState(const msgs::SetSimulationState::Request& request,
                                msgs::SetSimulationState::Response& response, const std::string&) {
   using Code = msgs::SimulationState;
   using Response = msgs::SetSimulationState::Response;
-  const State state = control_.state();
   const std::uint8_t target = request.state.state;
-  const bool already = (target == Code::STATE_PAUSED && state == State::kPaused) ||
-                       (target == Code::STATE_PLAYING && state == State::kPlaying);
-  const auto refused = static_cast<std::uint8_t>(already ? Response::ALREADY_IN_TARGET_STATE
-                                                         : Response::STATE_TRANSITION_ERROR);
+  const auto refused = static_cast<std::uint8_t>(Response::STATE_TRANSITION_ERROR);
   if (target == Code::STATE_PAUSED) {
     response.result = resultFrom([this] { control_.pause(); }, refused);
   } else if (target == Code::STATE_PLAYING) {
@@ -188,6 +184,11 @@ void SessionServices::setState(const msgs::SetSimulationState::Request& request,
     response.result = resultOf(Response::INCORRECT_TRANSITION,
                                "state " + std::to_string(target) + " cannot be set");
   }
+  const State state = control_.state();  // another client may have set it meanwhile
+  const bool there = (target == Code::STATE_PAUSED && state == State::kPaused) ||
+                     (target == Code::STATE_PLAYING && state == State::kPlaying);
+  if (response.result.result == refused && there)
+    response.result.result = Response::ALREADY_IN_TARGET_STATE;
 }
 
 void SessionServices::step(const msgs::StepSimulation::Request& request,
@@ -229,7 +230,7 @@ void SessionServices::spawn(const msgs::SpawnEntity::Request& request,
     return refuse(Response::NO_RESOURCE, "there is one kind of vehicle; expected no resource");
   if (!request.entity_namespace.empty())
     return refuse(Response::NAMESPACE_INVALID, "a vehicle has no topics; expected no namespace");
-  if (!frame.empty() && frame != kMapFrame && frame != "world")
+  if (!frame.empty() && frame != frameId(kMapFrame) && frame != kMapFrame && frame != "world")
     return refuse(Response::INVALID_POSE, "frame '" + core::shortened(frame) + "'; expected map");
   std::string name = request.name.empty() ? std::string(kSpawnedName) + "_0" : request.name;
   if (request.allow_renaming || request.name.empty()) name = freeName(name);

@@ -28,6 +28,16 @@ std::vector<std::string> knownParameters() {
           "results",     "camera",      "video",        "overwrite",     "heartbeat_timeout"};
 }
 
+/// In a namespace a session is one of several on a master, whose clocks would contradict.
+bool ownsClock() { return ros::this_node::getNamespace() == "/"; }
+
+const char* paceText(session::SessionControl::State state) {
+  using State = session::SessionControl::State;
+  if (state == State::kOver) return "over";
+  if (state == State::kPlaying) return "playing";
+  return state == State::kPaused ? "paused" : "stepping";
+}
+
 }  // namespace
 
 TrafficSimulatorNode::TrafficSimulatorNode(const Parameters& parameters, StopSignal& stop)
@@ -49,6 +59,11 @@ TrafficSimulatorNode::TrafficSimulatorNode(const Parameters& parameters, StopSig
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
   if (graph_.external_ego) external_ego_ = std::make_unique<ExternalEgo>(*setup_, graph_);
+  if (graph_.external_cbvs) {
+    external_cbvs_ = std::make_unique<ExternalCbvs>(
+        options.simulation_step, graph_.paced,
+        [this](const Topic& topic, const AnyMessage& control) { pacer_->take(topic, control); });
+  }
   display_.showSensors(*setup_);
   if (graph_.has(kCameraNode)) display_.showCameras(setup_->rigs());
   participants_ = ParticipantTracker(graph_.participants);
@@ -75,6 +90,9 @@ int TrafficSimulatorNode::run() {
   advertise();
   listen();
   services_ = std::make_unique<SessionServices>(world_->control(), *setup_);
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
+  diagnostics_->setHardwareID(setup_->options().name);
+  diagnostics_->add("session", this, &TrafficSimulatorNode::diagnose);
   session_.publish(shared(sessionInfo(world_->simulatorVersion())));
   route_.publish(shared(toPathMsg(setup_->egoRoute())));
   if (const auto end = waitForParticipants()) endSession(*end);
@@ -122,7 +140,7 @@ ros::Publisher TrafficSimulatorNode::advertise(const Topic& topic) {
 }
 
 void TrafficSimulatorNode::advertise() {
-  clock_ = advertise(ChannelId::kClock);
+  if (ownsClock()) clock_ = advertise(ChannelId::kClock);
   session_ = advertise(ChannelId::kSession);
   traffic_ = advertise(ChannelId::kTraffic);
   route_ = advertise(ChannelId::kEgoRoute);
@@ -152,21 +170,29 @@ void TrafficSimulatorNode::listenTo(const Topic& topic) {
   inputs_.push_back(topic.row().type.subscribe(
       gate_, node_, topic.name(), siblingNodes(publishersOf(topic, graph_)),
       [this, topic](const AnyMessage& message) { return takeAnswer(topic, message); }));
-  if (external_ego_ && topic == external_ego_->topic()) ego_command_ = inputs_.back();
+  if (ofUser(topic)) commands_[topic] = inputs_.back();
+}
+
+bool TrafficSimulatorNode::ofUser(const Topic& topic) const {
+  if (external_ego_ && topic == external_ego_->topic()) return true;
+  return external_cbvs_ && topic.id == ChannelId::kCbvControl;
 }
 
 /// Returns why a message cannot be used; empty when it can.
 std::string TrafficSimulatorNode::takeAnswer(const Topic& topic, const AnyMessage& message) {
-  if (external_ego_ && topic == external_ego_->topic()) return takeCommand(message);
+  if (ofUser(topic)) return takeCommand(topic, message);
   std::string wrong = unusable(message, topic, graph_);
   if (wrong.empty() && topic.id == ChannelId::kSelection)
     wrong = unusable(*messageAs<msgs::CbvSelection>(message), setup_->network());
   if (!wrong.empty()) return wrong;
   pacer_->take(topic, message);
+  if (external_cbvs_ && topic.id == ChannelId::kSelection)
+    external_cbvs_->selected(messageAs<msgs::CbvSelection>(message));
   return {};
 }
 
-std::string TrafficSimulatorNode::takeCommand(const AnyMessage& message) {
+std::string TrafficSimulatorNode::takeCommand(const Topic& topic, const AnyMessage& message) {
+  if (topic.id == ChannelId::kCbvControl) return external_cbvs_->take(topic, message);
   const EgoAnswer answer = external_ego_->take(message);
   if (answer.control) pacer_->take(ChannelId::kEgoControl, answer.control);
   return answer.refused;
@@ -180,31 +206,46 @@ void TrafficSimulatorNode::noteFault(const std::string& source, const std::strin
   world_->recordFault(source, text);
 }
 
-std::string TrafficSimulatorNode::commandName() const { return external_ego_->topic().name(); }
-
-std::optional<SessionEnd> TrafficSimulatorNode::externalEgoGone() const {
-  if (!graph_.external_ego || !published_) return std::nullopt;
-  const std::string topic = commandName();
-  if (ego_command_.getNumPublishers() > 0 &&
-      !connections_.stoppedListening(gate_.firstSender(topic)))
-    return std::nullopt;
-  return SessionEnd{SessionStatus::kError, "the external ego planner",
-                    "no node publishes on " + topic + " any more"};
+std::optional<SessionEnd> TrafficSimulatorNode::externalPlannerGone() const {
+  if (!published_) return std::nullopt;
+  for (const auto& [topic, commands] : commands_) {
+    if (commands.getNumPublishers() > 0 &&
+        !connections_.stoppedListening(gate_.firstSender(topic.name())))
+      continue;
+    return SessionEnd{SessionStatus::kError, answererOf(topic, graph_),
+                      "no node publishes on " + topic.name() + " any more"};
+  }
+  return std::nullopt;
 }
 
 std::optional<SessionEnd> TrafficSimulatorNode::waitForParticipants() {
-  watch_.setOtherCause([this] { return externalEgoGone(); });
+  watch_.setOtherCause([this] { return externalPlannerGone(); });
   const auto missing = [this] {
-    std::vector<Missing> missing = watch_.notReady();
-    if (graph_.external_ego && ego_command_.getNumPublishers() == 0)
-      missing.insert(missing.begin(), {"the external ego planner", missingEgo()});
+    std::vector<Missing> missing = missingPlanners();
+    for (Missing& node : watch_.notReady()) missing.push_back(std::move(node));
     return missing;
   };
   return watch_.waitFor(missing, limits_.start);
 }
 
-/// Commands that go elsewhere are named at once, and again at the end of patience.
-std::string TrafficSimulatorNode::missingEgo() {
+/// The user's own nodes that do not publish yet. Commands of an ego that go elsewhere are named at
+/// once, and again at the end of patience.
+std::vector<Missing> TrafficSimulatorNode::missingPlanners() {
+  std::vector<Missing> missing;
+  for (const auto& [topic, commands] : commands_) {
+    if (commands.getNumPublishers() > 0) continue;
+    const bool of_cbv = topic.id == ChannelId::kCbvControl;
+    const std::string elsewhere = of_cbv ? "" : misdirected();
+    const std::string example = of_cbv ? "examples/external_cbv.py" : "external_ego_node";
+    missing.push_back(
+        {answererOf(topic, graph_),
+         "no node publishes " + topic.name() + " yet; " +
+             (elsewhere.empty() ? "start yours (" + example + " is an example)" : elsewhere)});
+  }
+  return missing;
+}
+
+std::string TrafficSimulatorNode::misdirected() {
   constexpr double kAskAgainAfter = 1.0;  // [s]
   if (!asked_master_ || secondsSince(*asked_master_) > kAskAgainAfter) {
     const std::string misdirected = misdirectedCommands(graph_);
@@ -212,8 +253,7 @@ std::string TrafficSimulatorNode::missingEgo() {
     misdirected_ = misdirected;
     asked_master_ = std::chrono::steady_clock::now();
   }
-  return "no node publishes " + commandName() + " yet; " +
-         (misdirected_.empty() ? "start yours (external_ego_node is an example)" : misdirected_);
+  return misdirected_;
 }
 
 void TrafficSimulatorNode::runTicks() {
@@ -237,6 +277,7 @@ std::optional<SessionEnd> TrafficSimulatorNode::holdBack() {
     const Clock::time_point now = Clock::now();
     const Clock::duration wait = control.holdBack(world_->snapshot().time, now);
     if (wait == Clock::duration::zero()) return std::nullopt;
+    diagnostics_->update();
     if (auto cause = watch_.sleepUntil(now + wait)) return cause;
   }
   return SessionEnd{SessionStatus::kInterrupted, "user", "interrupted"};
@@ -252,13 +293,16 @@ void TrafficSimulatorNode::publishTick() {
   rosgraph_msgs::Clock clock;
   clock.clock = message.header.stamp;
   published_ = shared(std::move(message));
-  clock_.publish(clock);
+  if (clock_) clock_.publish(clock);
   gate_.setNewestTick(published_->tick, setup_->options().simulation_step);
   services_->show(published_);
   display_.publish(snapshot);
   if (external_ego_) external_ego_->published(snapshot);
+  if (external_cbvs_) external_cbvs_->published(*published_);
   traffic_.publish(published_);
   pacer_->published(published_);
+  steered_ += snapshot.steering.size();
+  diagnostics_->update();
 }
 
 /// How much was ignored, in the last snapshot.
@@ -309,6 +353,20 @@ int runTrafficSimulator(StopSignal& stop) {
     noteRefusal();
     throw;
   }
+}
+
+void TrafficSimulatorNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  const bool troubled = !noted_faults_.empty() || pacer_->late() > 0;
+  status.summary(troubled ? DiagnosticStatus::WARN : DiagnosticStatus::OK,
+                 traffic::toText(snapshot.status));
+  status.add("tick", snapshot.tick);
+  status.add("vehicles", snapshot.vehicles.size());
+  status.add("pace", paceText(world_->control().state()));
+  status.add("changes steered", steered_);
+  status.add("late answers", pacer_->late());
+  status.add("faults that nodes reported", noted_faults_.size());
 }
 
 int TrafficSimulatorNode::exitCode() const {

@@ -4,12 +4,14 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "diagnostic_updater/diagnostic_updater.h"
 #include "node_graph/lockstep/message_gate.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/pacer.h"
@@ -17,6 +19,7 @@
 #include "node_graph/lockstep/session_watch.h"
 #include "node_graph/messages/display.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/nodes/external_cbvs.h"
 #include "node_graph/nodes/external_ego.h"
 #include "node_graph/nodes/session_services.h"
 #include "node_graph/result_reserve.h"
@@ -52,11 +55,12 @@ class TrafficSimulatorNode {
   void listen();
   void listenTo(const Topic& topic);
   std::string takeAnswer(const Topic& topic, const AnyMessage& message);
-  std::string takeCommand(const AnyMessage& message);
+  std::string takeCommand(const Topic& topic, const AnyMessage& message);
   void noteFault(const std::string& source, const std::string& text);
-  std::string commandName() const;
-  std::optional<SessionEnd> externalEgoGone() const;
-  std::string missingEgo();
+  bool ofUser(const Topic& topic) const;
+  std::optional<SessionEnd> externalPlannerGone() const;
+  std::vector<Missing> missingPlanners();
+  std::string misdirected();
   std::optional<SessionEnd> waitForParticipants();
   void runTicks();
   std::optional<SessionEnd> holdBack();
@@ -67,6 +71,7 @@ class TrafficSimulatorNode {
   void waitForResult();
   void writeResultAlone();
   int exitCode() const;
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   StopSignal& stop_;
   ros::NodeHandle node_;
@@ -89,14 +94,17 @@ class TrafficSimulatorNode {
   Display display_;
   std::vector<ros::Subscriber> inputs_;
   std::unique_ptr<ExternalEgo> external_ego_;
-  ros::Subscriber ego_command_;  ///< of the external ego
-  std::string misdirected_;      ///< commands that nobody listens to
+  std::unique_ptr<ExternalCbvs> external_cbvs_;
+  std::map<Topic, ros::Subscriber> commands_;  ///< of the user's own nodes
+  std::string misdirected_;                    ///< commands that nobody listens to
   std::optional<std::chrono::steady_clock::time_point> asked_master_;
   std::unique_ptr<session::World> world_;
   std::unique_ptr<ResultReserve> reserve_;
   std::unique_ptr<Pacer> pacer_;
   std::unique_ptr<SessionServices> services_;
   ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;
+  std::size_t steered_ = 0;  ///< changes so far
+  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };
 
 /// Runs the session that the node's parameters ask for; bad input is reported in one line, and in
