@@ -10,7 +10,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "e2e_cdiff/DeleteEntity.h"
@@ -66,11 +68,26 @@ int tune(const std::string& name, const std::string& value) {
                          .c_str());
 }
 
-/// As a slider does: many values in a row; how many were taken.
+/// As a slider does, by the same client: 100 values in a row, and at last one that is no number;
+/// the program's exit code.
 int slide() {
-  int taken = 0;
-  for (int i = 1; i <= 100; ++i) taken += steer("weight.speed", std::to_string(0.01 * i));
-  return taken;
+  return std::system(
+      "/usr/bin/python3 -c '\n"
+      "import rospy\n"
+      "from dynamic_reconfigure.client import Client\n"
+      "rospy.init_node(\"slider\")\n"
+      "client = Client(\"/traffic_simulator_node\", timeout=20)\n"
+      "for i in range(1, 101): now = client.update_configuration({\"speed_weight\": 0.01 * i})\n"
+      "now = client.update_configuration({\"speed_weight\": float(\"nan\")})\n"
+      "exit(0 if now[\"speed_weight\"] == 1.0 else 1)'");
+}
+
+/// Two clients at once; the smaller answer first.
+template <class Call>
+std::pair<int, int> together(const Call& call) {
+  std::future<int> other = std::async(std::launch::async, call);
+  const int one = call();
+  return std::minmax({one, other.get()});
 }
 
 int remove(const std::string& id) {
@@ -120,19 +137,26 @@ class Hand {
 
   void steerSession() {
     using Code = msgs::SimulationState;
-    note("pause", setState(Code::STATE_PAUSED));
+    const auto [first, second] = together([] { return setState(Code::STATE_PAUSED); });
+    note("pause", first);
+    note("pause by another client", second);
     note("pause again", setState(Code::STATE_PAUSED));
+    note("no step", step(0));
+    note("too many steps", step(1000000000));
     note("step", step(1));
     const long before = tickNow();
     note("steps", step(5));
     note("ticks of 5 steps", static_cast<int>(tickNow() - before));
     note("odometry of the CBV", odometryCame() ? 1 : 0);
     note("profile", steer("profile", "safety_critical"));
-    note("weight", steer("weight.collision_seeking", "20"));
+    const auto [one, other] = together([] { return steer("weight.collision_seeking", "20"); });
+    note("weight", one);
+    note("weight by another client", other);
     note("weight by dynparam", tune("traffic_avoidance_weight", "3"));
     note("too large by dynparam", tune("speed_weight", "2000"));
     note("slider", slide());
     note("weight out of range", steer("weight.speed", "2000"));
+    note("weight that is no number", steer("weight.speed", "nan"));
     note("unknown vehicle", steer("choose", "nobody"));
     note("target speed", steer("target_speed", "10"));
     note("remove", remove(nearestOfTraffic()));

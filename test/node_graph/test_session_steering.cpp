@@ -15,6 +15,7 @@
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 #include "what_if/recorded_run.h"
+#include "what_if/take_over.h"
 
 namespace cdiff {
 namespace {
@@ -74,9 +75,11 @@ TEST_F(Session, SteeredByHandIsNotJudgedAndRepeatsToTheSameBytes) {
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
   // 1 is OK, 0 unsupported, 2 not found, 3 not in this state, 4 refused, 101 there already.
   EXPECT_EQ(core::readFile(found, "answers"),
-            "pause 1\npause again 101\nstep 1\nsteps 1\nticks of 5 steps 5\n"
-            "odometry of the CBV 1\nprofile 1\nweight 1\nweight by dynparam 0\n"
-            "too large by dynparam 0\nslider 100\nweight out of range 4\nunknown vehicle 4\n"
+            "pause 1\npause by another client 101\npause again 101\nno step 3\n"
+            "too many steps 3\nstep 1\nsteps 1\nticks of 5 steps 5\nodometry of the CBV 1\n"
+            "profile 1\nweight 1\nweight by another client 1\nweight by dynparam 0\n"
+            "too large by dynparam 0\nslider 0\nweight out of range 4\n"
+            "weight that is no number 4\nunknown vehicle 4\n"
             "target speed 1\nremove 1\nremove nobody 2\nspawn on the ego 101\nreset 0\n"
             "steps with what was steered 1\nresume 1\nstep while running 3\npace 1\n");
   const nlohmann::json recorded = summary();
@@ -98,11 +101,18 @@ TEST_F(Session, SteeredByHandIsNotJudgedAndRepeatsToTheSameBytes) {
   EXPECT_EQ(weights[steered - 2].count("collision_seeking"), 0U);
   EXPECT_EQ(weights[steered]["collision_seeking"], 20.0) << "in the decision of the change";
   EXPECT_EQ(weights[steered]["traffic_avoidance"], 3.0);
+  EXPECT_EQ(weights[steered]["speed"], 1.0);
   const fs::path replayed = folder_ / "replayed";
   node_graph::replayBag(results() / "session.bag", replayed);
   EXPECT_EQ(summaryIn(replayed)["steering"], recorded["steering"]);
   EXPECT_EQ(summaryIn(replayed)["verdict"], recorded["verdict"]);
-  EXPECT_EQ(what_if::RecordedRun(results()).scenario().steering.size(), 6U);
+  const what_if::RecordedRun run(results());
+  EXPECT_EQ(run.scenario().steering.size(), 6U);
+  const session::SessionSetup setup(run.scenario());
+  const what_if::TakeOver take_over{steered + 20, steered + 30, ""};  // with what was steered
+  const auto course =
+      what_if::driveClosed(run, what_if::Driver(setup, what_if::DriverChoice()), setup, take_over);
+  EXPECT_NE(course.trace.find("\n" + std::to_string(steered + 30) + ",ego,"), std::string::npos);
 
   session::SessionRequest request = requestOf({"protocol.time_limit=8"});
   const fs::path bag = folder_ / "recorded.bag";
@@ -116,6 +126,62 @@ TEST_F(Session, SteeredByHandIsNotJudgedAndRepeatsToTheSameBytes) {
                                          " set:=\"protocol.time_limit=8\"");
   EXPECT_EQ(summary()["trace_sha256"], recorded["trace_sha256"]);
   EXPECT_EQ(summary()["steering"]["by_hand"], false);
+}
+
+TEST_F(Session, AReplayRefusesWhoSteers) {
+  const fs::path recorded = folder_ / "recorded";
+  test::recordSession(recorded, {"protocol.time_limit=8"});
+  const fs::path script = folder_ / "ask.sh";
+  std::ofstream(script) << "for try in $(seq 200); do rosservice info /steer >/dev/null 2>&1 && "
+                           "break; sleep 0.1; done\n"
+                        << "cd " << folder_.string() << "\n"
+                        << "rosservice call /steer '{what: target_speed, value: \"9\"}' >steer\n"
+                        << "rosservice call /set_simulation_state 'state: {state: 2}' >pause\n"
+                        << "rosservice call /delete_entity 'entity: ego' >delete\n"
+                        << "for try in $(seq 300); do [ -e " << results().string()
+                        << "/exit_code ] && break; sleep 0.1; done\n";
+  const std::string log =
+      launch("e2e_cdiff replay.launch", "rate:=1 bag:=" + (recorded / "session.bag").string(),
+             "bash " + script.string());
+  for (const char* answer : {"steer", "pause", "delete"}) {
+    const std::string text = core::readFile(folder_ / answer, "answer");
+    EXPECT_NE(text.find("result: 0"), std::string::npos) << text << log;
+    EXPECT_NE(text.find("this is the replay of a bag"), std::string::npos) << text;
+  }
+  EXPECT_EQ(core::readFile(results() / "trace.csv", "trace"),
+            core::readFile(recorded / "trace.csv", "trace"));
+}
+
+// Who repeats steering means the session that recorded it.
+TEST_F(Session, SteeringOfAnotherSessionOrVersionIsRefused) {
+  test::recordSession(folder_ / "recorded", {"protocol.time_limit=1"});
+  const fs::path bag = folder_ / "recorded" / "session.bag";
+  const session::SteeredSession of_bag = node_graph::steeredSession(bag);
+  const session::SteeredSession of_folder = node_graph::steeredSession(bag.parent_path());
+  EXPECT_EQ(of_bag.scenario, of_folder.scenario);
+  EXPECT_EQ(of_bag.seed, of_folder.seed);
+  EXPECT_EQ(of_bag.version, of_folder.version);
+  session::ScenarioOptions options;
+  options.name = of_bag.scenario;
+  options.seed = of_bag.seed;
+  const auto refusal = [&](const std::string& version) -> std::string {
+    try {
+      session::requireSameSession(bag, of_bag, options, version);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(of_bag.version), "");
+  EXPECT_NE(refusal("0.0.1").find("e2e_cdiff " + of_bag.version + " recorded its steering"),
+            std::string::npos)
+      << refusal("0.0.1");
+  ++options.seed;
+  EXPECT_NE(refusal(of_bag.version).find("and this session is"), std::string::npos);
+  const std::string log =
+      launch("e2e_cdiff session.launch", kScenario + "seed:=77 steering:=" + bag.string());
+  EXPECT_EQ(exitCode(), "3\n") << log;
+  EXPECT_NE(log.find("with seed 77"), std::string::npos) << log;
 }
 
 // The CBVs attack from 4 s on; a paced session drops decisions, but not what they carry.

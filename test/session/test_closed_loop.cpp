@@ -135,6 +135,9 @@ TEST(ClosedLoop, PlannersBySlotAreNamedInErrors) {
   };
   EXPECT_NE(errorOf("pdm_lite+difusion").find("'difusion', an unknown planner"), std::string::npos)
       << errorOf("pdm_lite+difusion");
+  EXPECT_NE(errorOf("pdm_lite+external").find("'external' drives the CBVs of all slots"),
+            std::string::npos)
+      << errorOf("pdm_lite+external");
   EXPECT_NE(errorOf("pdm_lite+").find("joined by single '+'"), std::string::npos)
       << errorOf("pdm_lite+");
   EXPECT_THROW(scenarioWith("crossing_left_turn", {"ego_planner=pdm_lite+diffusion"}),
