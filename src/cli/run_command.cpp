@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/progress.h"
@@ -25,6 +26,7 @@
 #include "session/steering_file.h"
 #include "suite/seal.h"
 #include "video/session_video.h"
+#include "watch/live_session.h"
 #ifdef E2E_CDIFF_WITH_ROS
 #include "node_graph/bags/recorded_steering.h"
 #include "node_graph/bags/session_bag_writer.h"
@@ -45,6 +47,7 @@ struct RunOutput {
   bool quiet = false;      ///< no progress line, no table
   bool record = false;     ///< also write session.bag; InputError where built without ROS
   bool overwrite = false;  ///< what an earlier session left in the folder is removed
+  std::optional<std::uint16_t> watch_port = {};  ///< of a live page; 0: a free one; absent: none
 };
 
 bool isJudged(int exit_code) {
@@ -152,6 +155,17 @@ class VideoRecord {
   bool reported_ = false;
 };
 
+/// The live page of a session that is to be watched; its address is printed. nullptr where none is.
+std::unique_ptr<watch::LiveSession> makeLiveSession(const session::SessionSetup& setup,
+                                                    const RunOutput& output,
+                                                    session::ClosedLoop& loop) {
+  if (!output.watch_port) return nullptr;
+  auto live = std::make_unique<watch::LiveSession>(
+      setup, std::make_unique<watch::ControlLink>(loop.control()), *output.watch_port);
+  std::cerr << "cdiff: " << live->invitation() << std::flush;
+  return live;
+}
+
 /// The session's table, and what it was asked to record.
 void printTable(const page::ResultWriter& writer, const RunOutput& output) {
   if (output.quiet) return;
@@ -176,13 +190,17 @@ void finishResult(page::ResultWriter& writer, double wall_seconds) {
 
 /// Runs the session and records it; an exit code.
 int drive(const session::SessionSetup& setup, const RunOutput& output, session::ClosedLoop& loop,
-          const std::atomic<bool>& stop, Clock::time_point begin) {
+          watch::LiveSession* live, const std::atomic<bool>& stop, Clock::time_point begin) {
   const session::ScenarioOptions& options = setup.options();
   page::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
                             output.folder);
   Progress progress(session::longestTime(options.protocol, setup.egoRoute()),
                     options.protocol.time_limit_speed_percent > 0.0);
   loop.addObserver(writer);
+  if (live != nullptr) {
+    loop.addObserver(*live);
+    live->begin(writer);
+  }
   if (!output.quiet) loop.addObserver(progress);
   BagRecording bag(setup, output, loop);
   VideoRecord video(setup, output.folder, loop);
@@ -198,6 +216,7 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   finishResult(writer, secondsSince(begin));
   const int exit_code = video.finish(writer, writer.exitCode());
   printTable(writer, output);
+  if (live != nullptr) live->finish();
   if (writer.result().verdict.outcome == record::Outcome::kNotJudged && options.verdict.judge)
     std::cerr << "cdiff: NOT JUDGED: the scenario has no rules, so exit code 0 means nothing\n";
   const std::string untested = record::untestedText(writer.result());
@@ -232,8 +251,9 @@ int runSession(const session::ScenarioOptions& options, const RunOutput& output)
     printTable(writer, output);
     return writer.exitCode();
   }
+  const std::unique_ptr<watch::LiveSession> live = makeLiveSession(setup, output, *loop);
   const record::ResultFolder folder = claim();
-  return drive(setup, output, *loop, stop, begin);
+  return drive(setup, output, *loop, live.get(), stop, begin);
 }
 
 struct RunArguments {
@@ -243,7 +263,15 @@ struct RunArguments {
   bool quiet = false;
   bool record = false;
   bool overwrite = false;
+  bool watch = false;
+  std::uint16_t watch_port = 0;
 };
+
+/// Of the live page, where one is asked for.
+std::optional<std::uint16_t> portOf(const RunArguments& arguments) {
+  if (!arguments.watch) return std::nullopt;
+  return arguments.watch_port;
+}
 
 std::vector<session::SteeringEntry> steeringOf(const std::string& source) {
 #ifdef E2E_CDIFF_WITH_ROS
@@ -273,7 +301,8 @@ int run(const RunArguments& arguments) {
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
                                    std::to_string(options.seed) + "_" + core::timeForFileName())
           : fs::path(arguments.results);
-  return runSession(options, {folder, arguments.quiet, arguments.record, arguments.overwrite});
+  return runSession(
+      options, {folder, arguments.quiet, arguments.record, arguments.overwrite, portOf(arguments)});
 }
 
 }  // namespace
@@ -305,6 +334,12 @@ void addRunCommand(CLI::App& program, int& exit_code) {
                     "Replace what an earlier session left in the result folder");
   command->add_flag("--record", arguments->record, "Also write session.bag, for replay and rviz");
   command->add_flag("--video", request.video, "Also write session.mp4: front view beside top view");
+  CLI::Option* watch = command->add_flag("--watch", arguments->watch,
+                                         "Show and steer the session on a page of this computer");
+  command
+      ->add_option("--watch-port", arguments->watch_port,
+                   "Port of that page (default: any that is free)")
+      ->needs(watch);
   command->add_flag("--quiet", arguments->quiet, "No progress line, no table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -12,6 +12,7 @@
 #include "page/page_parts.h"
 #include "page/pictures/session_charts.h"
 #include "page/playback.h"
+#include "page/player_parts.h"
 #include "page/report_tables.h"
 #include "record/session_text.h"
 #include "session/session_request.h"
@@ -227,6 +228,7 @@ std::string htmlReport(const record::SessionResult& result) {
                       banner(result) + lateBanner(result) + tiles(result) + pageContents(parts) +
                           pageSections(parts),
                       core::jsonElement("playback", playbackJson(result, canvas)) +
+                          core::scriptElement(kPlayerScript) +
                           core::scriptElement(kReportScript));
 }
 

@@ -11,13 +11,13 @@
 #include <set>
 
 #include "core/text.h"
-#include "e2e_cdiff/core/angle.h"
 #include "page/approach_section.h"
 #include "page/page_parts.h"
 #include "page/pictures/attention.h"
 #include "page/pictures/map_canvas.h"
 #include "page/pictures/perception.h"
 #include "page/pictures/top_view.h"
+#include "page/player_parts.h"
 #include "record/logs/cbv_log.h"
 
 namespace cdiff::page {
@@ -27,17 +27,6 @@ std::set<int> slotsOf(const record::SessionResult& result) {
   std::set<int> slots;
   for (const record::CbvRecord& record : result.cbv.records()) slots.insert(record.slot);
   return slots;
-}
-
-Markup sight(int slot) {
-  const Markup content = element("img", {{"width", "320"},
-                                         {"height", "192"},
-                                         {"alt", "Front view of a CBV"},
-                                         core::flag("hidden")}) +
-                         element("p", {{"class", "nothing"}}, "No CBV now") +
-                         element("figcaption", {}, "");
-  return element("figure", {{"class", "sight"}, {"data-slot", std::to_string(slot)}}, content) +
-         "\n";
 }
 
 /// What the pictures are, and why there are none.
@@ -60,39 +49,17 @@ Markup sights(const record::SessionResult& result) {
   const bool wanted = result.setup.options().report.front_view_rate > 0.0;
   if (wanted && !result.cbv.records().empty()) {
     Markup views = "\n";
-    for (const int slot : slotsOf(result)) views += sight(slot);
+    for (const int slot : slotsOf(result)) views += sightFigure(slot);
     html += element("div", {{"id", "sights"}, core::flag("hidden")}, views) + "\n";
   }
   return element("div", {{"class", "sights"}}, html + pageNote(sightNote(result))) + "\n";
 }
 
-/// The script fills its rows.
-Markup momentTable() {
-  Markup head = element("th", {{"scope", "col"}}, "Now");
-  for (const char* name :
-       {"Speed [m/s]", "Throttle", "Brake", "Steer", "Between outlines [m]", "2D-TTC [s]"}) {
-    head += element("th", {{"scope", "col"}, {"class", "number"}}, name);
-  }
-  const Markup rows = element("thead", {}, element("tr", {}, head)) + element("tbody");
-  return element("div", {{"class", "scroll"}},
-                 element("table", {{"id", "moment"}, core::flag("hidden")}, rows)) +
-         "\n";
-}
-
-Markup button(const char* id, const char* text, const std::vector<core::Attribute>& more = {}) {
-  std::vector<core::Attribute> attributes = {{"type", "button"}, {"id", id}};
-  attributes.insert(attributes.end(), more.begin(), more.end());
-  return element("button", attributes, text);
-}
-
 Markup paceChoice() {
-  Markup choices;
-  for (const std::string pace : {"0.25", "0.5", "1", "2", "4"}) {
-    std::vector<core::Attribute> attributes = {{"value", pace}};
-    if (pace == "1") attributes.push_back(core::flag("selected"));
-    choices += element("option", attributes, pace + "×");
-  }
-  return element("label", {}, "Pace " + element("select", {{"id", "pace"}}, choices)) + "\n";
+  std::vector<std::pair<std::string, std::string>> paces;
+  for (const std::string pace : {"0.25", "0.5", "1", "2", "4"})
+    paces.emplace_back(pace, pace + "×");
+  return element("label", {}, "Pace " + pageChoice("pace", paces, "1")) + "\n";
 }
 
 Markup slider() {
@@ -102,28 +69,19 @@ Markup slider() {
                                          {"value", "0"},
                                          {"step", "1"},
                                          {"aria-label", "Time of the session"}});
-  return button("play", "Play") + "\n" + range + "\n" +
+  return pageButton("play", "Play") + "\n" + range + "\n" +
          element("output", {{"id", "now"}, {"for", "time"}});
 }
 
-Markup zoomButtons() {
-  return element("span", {{"class", "group"}},
-                 button("closer", "+", {{"aria-label", "Zoom in"}}) +
-                     button("farther", "−", {{"aria-label", "Zoom out"}}) +
-                     button("whole", "Whole picture"));
-}
-
 Markup controls() {
-  const Markup follow = element(
-      "label", {}, element("input", {{"type", "checkbox"}, {"id", "follow"}}) + " Follow the ego");
   const Markup keys = element(
       "p", {{"class", "note keys"}},
       "Keys: space plays and pauses, ← and → step, with shift by 1 s, Home and End. The address "
       "with #t=12.5 opens the page at 12.5 s.");
   const Markup content =
       element("div", {{"class", "row"}}, slider()) + "\n" +
-      element("div", {{"class", "row"}}, paceChoice() + zoomButtons() + "\n" + follow) + "\n" +
-      keys;
+      element("div", {{"class", "row"}}, paceChoice() + zoomButtons() + "\n" + followBox(false)) +
+      "\n" + keys;
   return element("div", {{"class", "controls"}, {"id", "controls"}, core::flag("hidden")},
                  "\n" + content + "\n") +
          "\n";
@@ -182,50 +140,9 @@ std::size_t poseCount(const record::Timeline& timeline) {
   return count;
 }
 
-constexpr float kLongestFrameTime = 100.0F;  // to a collision [s]
-constexpr double kFrameRounding = 1e-6;      // [s]
-
-/// 0 where there is no number.
-long rounded(double value) { return std::isfinite(value) ? std::lround(value) : 0; }
+constexpr double kFrameRounding = 1e-6;  // [s]
 
 double hundredths(double value) { return std::round(100.0 * value) / 100.0; }
-
-/// Six whole numbers per vehicle: index, style, x and y [0.1 pixel], heading clockwise [deg], speed
-/// [0.1 m/s].
-Json frameNumbers(const record::TimelineFrame& frame, const MapCanvas& canvas,
-                  const std::vector<std::size_t>& cbv_styles) {
-  Json numbers = Json::array();
-  for (auto pose = frame.poses.rbegin(); pose != frame.poses.rend(); ++pose) {
-    if (!canvas.shows({pose->x, pose->y})) continue;
-    const Eigen::Vector2d pixel = canvas.toPixels({pose->x, pose->y});
-    const std::size_t style = pose->role == traffic::VehicleRole::kEgo   ? 0
-                              : pose->role == traffic::VehicleRole::kCbv ? cbv_styles[pose->vehicle]
-                                                                         : 1;
-    numbers.push_back(pose->vehicle);
-    numbers.push_back(style);
-    numbers.push_back(rounded(10.0 * pixel.x()));
-    numbers.push_back(rounded(10.0 * pixel.y()));
-    numbers.push_back(rounded(-core::radiansToDegrees(static_cast<double>(pose->heading))));
-    numbers.push_back(rounded(10.0 * static_cast<double>(pose->speed)));
-  }
-  return numbers;
-}
-
-/// Seven numbers per driven vehicle: index, slot (-1: the ego), throttle, brake, steer [%], gap
-/// [cm] and 2D-TTC [0.01 s], both negative where not defined.
-Json momentNumbers(const record::TimelineFrame& frame) {
-  Json numbers = Json::array();
-  for (const record::TimelinePose& pose : frame.poses) {
-    if (pose.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
-    numbers.push_back(pose.vehicle);
-    numbers.push_back(pose.slot);
-    for (const float value : {pose.throttle, pose.brake, pose.steer, pose.gap,
-                              std::min(pose.time_to_collision, kLongestFrameTime)}) {
-      numbers.push_back(rounded(100.0 * static_cast<double>(value)));
-    }
-  }
-  return numbers;
-}
 
 /// By slot: [time [s], vehicle index, JPEG].
 Json viewLists(const record::SessionResult& result) {
@@ -292,7 +209,7 @@ std::vector<std::size_t> cbvStyles(const record::SessionResult& result) {
   std::vector<std::size_t> styles;
   for (const record::TimelineVehicle& vehicle : result.timeline.vehicles()) {
     const std::string style = styleOf(traffic::VehicleRole::kCbv, vehicle.id, result.cbv);
-    styles.push_back(2 + static_cast<std::size_t>(style.back() - '0'));
+    styles.push_back(cbvStyleNumber(static_cast<std::size_t>(style.back() - '0')));
   }
   return styles;
 }
@@ -309,7 +226,7 @@ Json attentionNumbers(const record::TimelineFrame& frame) {
   for (const record::TimelineAttention& gaze : frame.gazes) {
     numbers.push_back(gaze.driver);
     numbers.push_back(gaze.vehicle);
-    numbers.push_back(rounded(100.0 * static_cast<double>(gaze.weight)));
+    numbers.push_back(roundedNumber(100.0 * static_cast<double>(gaze.weight)));
   }
   return numbers;
 }
@@ -319,7 +236,7 @@ Json perceivedTexts(const record::TimelineFrame& frame, const MapCanvas& canvas)
   Json texts = Json::array();
   for (const PerceivedPath& path : perceivedPaths(frame.perception, canvas)) {
     texts.push_back(path.style);
-    texts.push_back(rounded(100.0 * path.opacity));
+    texts.push_back(roundedNumber(100.0 * path.opacity));
     texts.push_back(path.data);
   }
   return texts;
@@ -365,14 +282,10 @@ void addFrames(Json& data, const record::SessionResult& result, const MapCanvas&
 }  // namespace
 
 std::string playbackJson(const record::SessionResult& result, const MapCanvas& canvas) {
-  Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
-               {"vehicles", Json::array()},
-               {"times", Json::array()},
-               {"frames", Json::array()},
-               {"moments", Json::array()},
-               {"plans", Json::array()},
-               {"touched", Json::array()},
-               {"period", result.front_views.period()},
+  Json data = {{"styles", vehicleStyles()}, {"vehicles", Json::array()},
+               {"times", Json::array()},    {"frames", Json::array()},
+               {"moments", Json::array()},  {"plans", Json::array()},
+               {"touched", Json::array()},  {"period", result.front_views.period()},
                {"views", viewLists(result)}};
   addVehicles(data, result);
   addFrames(data, result, canvas);

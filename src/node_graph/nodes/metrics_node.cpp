@@ -4,17 +4,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <thread>
 
 #include "core/program.h"
 #include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "node_graph/messages/display.h"
 #include "node_graph/messages/slot_figures.h"
 #include "node_graph/node_main.h"
+#include "node_graph/nodes/service_link.h"
 #include "node_graph/session_files.h"
 #include "node_graph/session_graph.h"
 #include "record/session_text.h"
@@ -46,6 +49,18 @@ std::string bagRow(const SessionGraph& graph, const std::filesystem::path& resul
   return row;
 }
 
+/// Of the live page; 0: any that is free.
+std::uint16_t portOf(const Parameters& parameters) {
+  constexpr double kLargestPort = 65535.0;
+  const std::string text = parameters.text("watch_port");
+  if (text.empty()) return 0;
+  const auto port = core::parseNumber(text);
+  if (port && *port >= 0.0 && *port <= kLargestPort && *port == std::floor(*port))
+    return static_cast<std::uint16_t>(*port);
+  throw core::InputError("watch_port '" + core::shortened(text) +
+                         "'; expected a whole number in [0, 65535], 0 for any port that is free");
+}
+
 /// The end of a session whose last snapshot never came.
 traffic::TrafficSnapshot unpublishedEnd(const traffic::TrafficSnapshot& last, double step,
                                         Ending ending, double timeout) {
@@ -74,7 +89,24 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
   map_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMapMarkers);
   map_output_.publish(mapMarkers(*setup_));
   advertiseFigures();
+  openPage();
   listenToAnswers(Party::kMetrics, setup_->options());
+}
+
+/// Serves the live page, if it is wanted: the session begins when it is open.
+void MetricsNode::openPage() {
+  const Parameters parameters = Parameters::ofThisNode();
+  if (!parameters.flag("watch", false)) return;
+  const session::ScenarioOptions& options = setup_->options();
+  try {
+    live_ = std::make_unique<watch::LiveSession>(
+        *setup_, std::make_unique<ServiceLink>(options.at_most), portOf(parameters));
+  } catch (const core::InputError& error) {
+    ROS_ERROR("%s; the session runs without its page", error.what());
+    return;
+  }
+  std::cout << live_->invitation() << std::flush;  // no log may have it
+  live_->begin(*writer_);
 }
 
 void MetricsNode::advertiseFigures() {
@@ -90,6 +122,7 @@ bool MetricsNode::handle(const Snapshot& message, bool superseded) {
   if (!begin_) begin_ = Clock::now();
   const TickRecordView tick(*message, answers(), setup_->network());
   writer_->observe(tick.record());
+  if (live_) live_->observe(tick.record());
   if (video_) video_->observe(tick.record());
   note(tick.record().latencies);
   if (const auto report = reporter_->report(tick.snapshot(), writer_->tickMeasures()))
@@ -148,6 +181,7 @@ int MetricsNode::conclude(Ending ending) {
     session::TickRecord record;
     record.snapshot = &snapshot;
     writer_->observe(record);
+    if (live_) live_->observe(record);
     if (video_) video_->observe(record);
   }
   writer_->finish(wallSeconds());
@@ -156,6 +190,7 @@ int MetricsNode::conclude(Ending ending) {
   std::cout << writer_->table() << bagRow(graph(), results)
             << record::fileRow("video", results / video::kVideoFile) << std::flush;
   writeExitCode(results, exit_code);
+  if (live_) live_->finish();
   return exit_code;
 }
 

@@ -13,6 +13,7 @@
 #include "node_graph/messages/markers.h"
 #include "page/result_writer.h"
 #include "video/session_video.h"
+#include "watch/live_session.h"
 
 namespace cdiff::node_graph {
 
@@ -38,6 +39,7 @@ class MetricsNode : public Observer {
   using Clock = std::chrono::steady_clock;
   void note(const std::vector<session::PlannerLatency>& latencies);
   void advertiseFigures();
+  void openPage();
   void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
   double wallSeconds() const;
   int finishVideo(int exit_code);
@@ -46,6 +48,7 @@ class MetricsNode : public Observer {
   std::unique_ptr<session::SessionSetup> setup_;
   std::unique_ptr<page::ResultWriter> writer_;
   std::unique_ptr<video::SessionVideo> video_;  ///< where the scenario asks for it
+  std::unique_ptr<watch::LiveSession> live_;    ///< where the launch file asks for it
   std::unique_ptr<MetricReporter> reporter_;
   SessionMarkers markers_;
   traffic::TrafficSnapshot last_;           ///< last snapshot observed

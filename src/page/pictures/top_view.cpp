@@ -92,8 +92,8 @@ Markup laneLines(const map::RoadNetwork& network, const MapCanvas& canvas) {
   return svgPath("lane", data);
 }
 
-Markup egoRoute(const record::SessionResult& result, const MapCanvas& canvas) {
-  const auto& points = result.setup.egoRoute().path().points();
+Markup egoRoute(const session::SessionSetup& setup, const MapCanvas& canvas) {
+  const auto& points = setup.egoRoute().path().points();
   if (points.empty()) return {};
   const std::string data = canvas.line(inPlane(points));
   const Eigen::Vector2d goal = canvas.toPixels(points.back().head<2>());
@@ -279,15 +279,9 @@ Markup scaleBarSvg(const MapCanvas& canvas) {
          "\n";
 }
 
-Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) {
-  const Markup content =
-      roadSvg(result.setup, canvas) + egoRoute(result, canvas) + conflictRoutes(result, canvas) +
-      trailPaths(result, canvas, VehicleRole::kBackground) +
-      trailPaths(result, canvas, VehicleRole::kCbv) +
-      trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
-      perceivedSvg(result.timeline, canvas) + attentionSvg(result.timeline, canvas) +
-      finalBoxes(result, canvas) + element("g", {{"id", "plans"}}) +
-      contactMarks(result.timeline, canvas) + conflictPoints(result, canvas) + scaleBarSvg(canvas);
+namespace {
+
+Markup pictureFromAbove(const Markup& content, const MapCanvas& canvas) {
   const double magnification = canvas.scale() * vehicleMagnification(canvas);
   return svgPicture("The session from above", {canvas.width(), canvas.height()},
                     {{"id", "top-view"},
@@ -295,6 +289,28 @@ Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) 
                      {"data-pixels-per-meter", core::formatFixed(canvas.scale(), 4)}},
                     content) +
          "\n";
+}
+
+}  // namespace
+
+Markup liveTopViewSvg(const session::SessionSetup& setup, const MapCanvas& canvas) {
+  Markup content = roadSvg(setup, canvas) + egoRoute(setup, canvas);
+  for (const char* layer :
+       {"trails", "conflicts", "vehicles", "ghosts", "plans", "contacts", "chosen", "names"})
+    content += element("g", {{"id", layer}}) + "\n";
+  return pictureFromAbove(content + scaleBarSvg(canvas), canvas);
+}
+
+Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) {
+  const Markup content =
+      roadSvg(result.setup, canvas) + egoRoute(result.setup, canvas) +
+      conflictRoutes(result, canvas) + trailPaths(result, canvas, VehicleRole::kBackground) +
+      trailPaths(result, canvas, VehicleRole::kCbv) +
+      trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
+      perceivedSvg(result.timeline, canvas) + attentionSvg(result.timeline, canvas) +
+      finalBoxes(result, canvas) + element("g", {{"id", "plans"}}) +
+      contactMarks(result.timeline, canvas) + conflictPoints(result, canvas) + scaleBarSvg(canvas);
+  return pictureFromAbove(content, canvas);
 }
 
 namespace {

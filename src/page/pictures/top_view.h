@@ -16,6 +16,10 @@ namespace cdiff::page {
 
 core::Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas);
 
+/// The same of a session that begins: drivable area, lanes, ego route, and a group for each kind of
+/// thing that the live page draws.
+core::Markup liveTopViewSvg(const session::SessionSetup& setup, const MapCanvas& canvas);
+
 /// Drivable area and lanes alone.
 core::Markup roadSvg(const session::SessionSetup& setup, const MapCanvas& canvas);
 

@@ -134,6 +134,8 @@ class Timeline {
   /// Adds the frame of an earlier tick that turned out to be an event, after the last `observe`. It
   /// has the attention and perception of the frame before it.
   void addEvent(const traffic::TrafficSnapshot& snapshot);
+  /// A frame of a snapshot, which is not kept; its vehicles are.
+  TimelineFrame frameOf(const traffic::TrafficSnapshot& snapshot);
 
   /// In order of appearance.
   const std::vector<TimelineVehicle>& vehicles() const { return vehicles_; }
@@ -146,7 +148,6 @@ class Timeline {
   double duration() const { return duration_; }
 
  private:
-  TimelineFrame frameOf(const traffic::TrafficSnapshot& snapshot);
   void addContacts(const traffic::TrafficSnapshot& snapshot);
   void updateGap(const traffic::TrafficSnapshot& snapshot);
   std::uint32_t indexOf(const traffic::Vehicle& vehicle);
