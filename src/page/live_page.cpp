@@ -200,7 +200,9 @@ Markup liveHeader(const session::ScenarioOptions& options) {
                     "live · " + options.mode + " · seed " + std::to_string(options.seed) +
                         " · ego " + options.ego_planner + " · CBV " + options.cbv_planner +
                         " · method " + session::methodText(session::methodOf(options)),
-                    banner);
+                    banner + pageNote("The ego (red) is under test. CBVs, critical background "
+                                      "vehicles (purple), are driven against it. All else is "
+                                      "traffic (blue)."));
 }
 
 /// What the script has to know from the start.
@@ -255,7 +257,7 @@ std::string challengeText(const guidance::ChallengeReport& report) {
   std::string text = "Mode challenging: the CBV " + report.state;
   if (!report.reason.empty()) text += " (" + report.reason + ")";
   if (report.last_brake_time)
-    text += "; the ego can brake for " + core::formatFixed(*report.last_brake_time, 1) + " s yet";
+    text += "; the ego must brake within " + core::formatFixed(*report.last_brake_time, 1) + " s";
   return text + ".";
 }
 
@@ -369,7 +371,7 @@ LiveJson LiveWriter::view(const record::FrontView& view) const {
   return {view.time, found - vehicles.begin(), record::base64(view.jpeg)};
 }
 
-LiveJson LiveWriter::verdict(const record::Verdict& so_far) {
+LiveJson LiveWriter::verdict(const record::Verdict& so_far, bool by_hand) {
   // What these rules ask for can still come.
   const std::set<std::string> open = {"status", "route_completion", "driving_score"};
   LiveJson rules = LiveJson::array();
@@ -382,13 +384,13 @@ LiveJson LiveWriter::verdict(const record::Verdict& so_far) {
     broken += bad ? 1 : 0;
     rules.push_back({outcome, waits ? "open" : outcome, check.text});
   }
-  const std::string reason =
-      so_far.reasons.empty() ? "No rule judges this session." : so_far.reasons.front();
-  const std::string text = rules.empty() ? reason
-                           : broken == 0
-                               ? "No rule is broken so far."
-                               : std::to_string(broken) + " of " + std::to_string(rules.size()) +
-                                     " rules are broken so far.";
+  std::string text = "No rule judges this session.";
+  if (!rules.empty()) {
+    text = broken == 0 ? "No rule is broken so far."
+                       : std::to_string(broken) + " of " + std::to_string(rules.size()) +
+                             " rules are broken so far.";
+  }
+  if (by_hand) text += " It is steered by hand, so it will not be judged.";
   return {{"style", broken > 0 ? "failed" : "running"}, {"text", text}, {"rules", rules}};
 }
 

@@ -60,8 +60,9 @@ class LiveWriter {
   nlohmann::ordered_json point(const LivePoint& point) const;
   /// null for a vehicle that no frame has had yet.
   nlohmann::ordered_json view(const record::FrontView& view) const;
-  /// The verdict so far: `style` of its banner, `text`, and its rules.
-  static nlohmann::ordered_json verdict(const record::Verdict& so_far);
+  /// The verdict so far, as if nobody had steered: `style` of its banner, `text`, and its rules.
+  /// `by_hand`: whether somebody has.
+  static nlohmann::ordered_json verdict(const record::Verdict& so_far, bool by_hand);
 
  private:
   MapCanvas canvas_;

@@ -92,7 +92,7 @@ void LiveSession::observe(const session::TickRecord& record) {
   keepPoint();
   keepViews(snapshot);
   keepTexts(snapshot);
-  if (viewers_ > 0) keepVerdict(false);
+  if (viewers_ > 0) keepVerdict();
 }
 
 void LiveSession::keepTick(const session::TickRecord& record) {
@@ -185,15 +185,13 @@ void LiveSession::noteValues() {
 }
 
 /// What the rules would find if the session ended by itself now.
-void LiveSession::keepVerdict(bool last) {
+void LiveSession::keepVerdict() {
   const Clock::time_point begin = Clock::now();
-  if (!last && begin < next_verdict_) return;
-  const record::SessionResult& result = writer_->result();
+  if (begin < next_verdict_) return;
   const record::Verdict verdict =
-      last ? result.verdict
-           : record::judge(setup_.options(), traffic::SessionStatus::kCompleted,
-                           writer_->measures(), {}, result.steering.records());
-  auto json = std::make_shared<const Json>(page::LiveWriter::verdict(verdict));
+      record::judge(setup_.options(), traffic::SessionStatus::kCompleted, writer_->measures(), {});
+  const bool by_hand = writer_->result().steering.byHand();
+  auto json = std::make_shared<const Json>(page::LiveWriter::verdict(verdict, by_hand));
   const std::chrono::duration<double> took = Clock::now() - begin;
   const std::chrono::duration<double> rest(std::max(kVerdictPeriod, took.count() / kVerdictShare));
   next_verdict_ = begin + std::chrono::duration_cast<Clock::duration>(rest);
@@ -211,7 +209,6 @@ void LiveSession::finish() {
   } catch (const core::Error&) {
     // the pages say that there is none
   }
-  keepVerdict(true);
   std::unique_lock<std::mutex> lock(mutex_);
   report_ = std::move(report);
   over_ = true;

@@ -66,7 +66,7 @@ class LiveSession : public session::SessionObserver, private WatchSource {
   void keepPoint();
   void keepViews(const traffic::TrafficSnapshot& snapshot);
   void keepTexts(const traffic::TrafficSnapshot& snapshot);
-  void keepVerdict(bool last);
+  void keepVerdict();
   void noteValues();
   void start();
   void addFrame(NewsCursor& cursor, Json& news);

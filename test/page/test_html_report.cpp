@@ -48,7 +48,7 @@ TEST(HtmlReport, EscapesNamesEverywhere) {
   EXPECT_EQ(page.find("<img src"), std::string::npos);
   EXPECT_NE(page.find("<h1>&lt;img src=x onerror=alert(1)&gt;</h1>"), std::string::npos);
   EXPECT_EQ(page.find("<b>fault"), std::string::npos);
-  EXPECT_EQ(countOf(page, "</script>"), 2u);
+  EXPECT_EQ(countOf(page, "</script>"), 3u);
 }
 
 TEST(HtmlReport, LabelsOfThePlayerBeginWithACapital) {
@@ -69,7 +69,7 @@ TEST(HtmlReport, AVehicleNameCannotEndTheScript) {
   writer.observe(record);
   writer.finish(1.0);
   const std::string page = core::readFile(scratch.path() / "report.html", "report");
-  EXPECT_EQ(countOf(page, "</script>"), 2u);
+  EXPECT_EQ(countOf(page, "</script>"), 3u);
   EXPECT_EQ(page.find("<b>"), std::string::npos);
   const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
   EXPECT_EQ(data["vehicles"][2][0], "</script><b>");

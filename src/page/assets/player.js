@@ -212,12 +212,12 @@ const makePlayer = function (data) {
   view.addEventListener("pointerdown", function (event) {
     if (zoom === 1) return;
     grip = { x: event.clientX, y: event.clientY };
-    follow.checked = false;
     view.setPointerCapture(event.pointerId);
     view.classList.add("moving");
   });
   view.addEventListener("pointermove", function (event) {
     if (!grip) return;
+    follow.checked = false;
     const meter = whole.w / zoom / view.clientWidth;
     center.x -= (event.clientX - grip.x) * meter;
     center.y -= (event.clientY - grip.y) * meter;
