@@ -18,10 +18,6 @@
 #include "session/steered_cbvs.h"
 
 namespace cdiff::page {
-
-extern const core::Asset kLiveStyle;
-extern const core::Asset kLiveScript;
-
 namespace {
 
 using LiveJson = nlohmann::ordered_json;

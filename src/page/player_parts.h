@@ -16,6 +16,8 @@ namespace cdiff::page {
 // frame as the numbers that it draws.
 
 extern const core::Asset kPlayerScript;
+extern const core::Asset kLiveScript;  ///< of the live page, after it
+extern const core::Asset kLiveStyle;
 
 /// CSS classes of vehicles, by the number that a frame has for them: ego, background, then CBVs by
 /// order of selection, the same again from the sixth on.

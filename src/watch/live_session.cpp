@@ -279,33 +279,36 @@ void LiveSession::take(const std::string& message,
 
 std::string LiveSession::news(NewsCursor& cursor) {
   Json news = Json::object();
-  addFrame(cursor, news);
+  const bool frame = addFrame(cursor, news);
   addLists(cursor, news);
   addState(cursor, news);
-  return news.empty() ? std::string() : dumped(news);
+  if (!frame) return news.empty() ? std::string() : dumped(news);
+  const std::string rest = dumped(news);
+  return R"({"frame":)" + frame_text_ + (news.empty() ? "" : ",") + rest.substr(1);
 }
 
-void LiveSession::addFrame(NewsCursor& cursor, Json& news) {
+/// Whether there is another frame for the viewer: frame_text_, the same for all of them.
+bool LiveSession::addFrame(NewsCursor& cursor, Json& news) {
   std::shared_ptr<const page::LiveTick> tick;
   std::map<int, std::shared_ptr<const record::FrontView>> views;
   std::uint64_t number = 0;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (ticks_ == cursor.frame) return;
+    if (ticks_ == cursor.frame) return false;
     tick = tick_;
     number = ticks_;
     views = views_;
   }
-  if (number != frame_) frame_json_ = std::make_shared<const Json>(pictures_.frame(*tick));
+  if (number != frame_) frame_text_ = dumped(pictures_.frame(*tick));
   frame_ = number;
   cursor.frame = number;
-  news["frame"] = *frame_json_;
   for (const auto& [slot, view] : views) {
     const std::uint64_t known = view->tick + 1;
     if (cursor.views[slot] == known) continue;
     cursor.views[slot] = known;
     news["views"][std::to_string(slot)] = pictures_.view(*view);
   }
+  return true;
 }
 
 void LiveSession::addLists(NewsCursor& cursor, Json& news) {

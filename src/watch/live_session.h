@@ -69,7 +69,7 @@ class LiveSession : public session::SessionObserver, private WatchSource {
   void keepVerdict();
   void noteValues();
   void start();
-  void addFrame(NewsCursor& cursor, Json& news);
+  bool addFrame(NewsCursor& cursor, Json& news);
   void addLists(NewsCursor& cursor, Json& news);
   void addState(NewsCursor& cursor, Json& news);
 
@@ -105,8 +105,8 @@ class LiveSession : public session::SessionObserver, private WatchSource {
 
   // Of the server's thread.
   page::LiveWriter pictures_;
-  std::uint64_t frame_ = 0;  ///< number of the tick that frame_json_ shows
-  std::shared_ptr<const Json> frame_json_;
+  std::uint64_t frame_ = 0;  ///< number of the tick that frame_text_ shows
+  std::string frame_text_;
 
   std::unique_ptr<WatchServer> server_;  ///< ends first
 };

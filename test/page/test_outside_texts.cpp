@@ -14,6 +14,7 @@
 #include "learning/small_samples.h"
 #include "page/outside_texts.h"
 #include "page/page_parts.h"
+#include "page/player_parts.h"
 #include "page/training_pages.h"
 
 namespace cdiff::page {
@@ -191,22 +192,34 @@ TEST(OutsideTexts, PicturesCutWhatIsTooLong) {
 }
 
 TEST(PageAssets, CanStandInTheirElements) {
-  for (const core::Asset* sheet : {&kReportStyle, &kPanelSheetStyle, &kSampleSheetStyle})
+  for (const core::Asset* sheet :
+       {&kReportStyle, &kPanelSheetStyle, &kSampleSheetStyle, &kLiveStyle})
     EXPECT_EQ(sheet->text().find_first_of("<&"), std::string_view::npos);
-  EXPECT_FALSE(has(std::string(kReportScript.text()), "</script"));
-  EXPECT_FALSE(has(std::string(kReportScript.text()), "<!--"));
+  for (const core::Asset* script : {&kPlayerScript, &kReportScript, &kLiveScript}) {
+    EXPECT_FALSE(has(std::string(script->text()), "</script"));
+    EXPECT_FALSE(has(std::string(script->text()), "<!--"));
+  }
   const std::string page = NamedResult("").textOf("report.html");
   EXPECT_TRUE(has(page, "<script>\n" + std::string(kReportScript.text()) + "</script>"));
   EXPECT_TRUE(has(page, "<style>\n" + std::string(kReportStyle.text()) + "</style>"));
 }
 
-TEST(PageAssets, TheScriptIsJavaScript) {
-  EXPECT_FALSE(has(std::string(kReportScript.text()), "::"));  // a name of C++
+TEST(PageAssets, TheScriptsAreJavaScript) {
   if (std::system("command -v node > /dev/null 2>&1") != 0) GTEST_SKIP() << "node is not installed";
   const test::TemporaryFolder scratch;
   const std::string file = (scratch.path() / "report.js").string();
-  core::writeFileAtomically(file, std::string(kReportScript.text()));
-  EXPECT_EQ(std::system(("node --check " + file).c_str()), 0);
+  for (const core::Asset* script : {&kPlayerScript, &kReportScript, &kLiveScript}) {
+    EXPECT_FALSE(has(std::string(script->text()), "::"));  // a name of C++
+    core::writeFileAtomically(file, std::string(script->text()));
+    EXPECT_EQ(std::system(("node --check " + file).c_str()), 0);
+  }
+}
+
+TEST(PageAssets, TheScriptsMakeNoMarkupOfTexts) {
+  for (const core::Asset* script : {&kPlayerScript, &kReportScript, &kLiveScript}) {
+    for (const char* way : {"innerHTML", "outerHTML", "insertAdjacentHTML", "document.write"})
+      EXPECT_FALSE(has(std::string(script->text()), way)) << way;
+  }
 }
 
 }  // namespace
