@@ -6,85 +6,20 @@ Runs the same session by turns: unwatched, watched without a page, and with a pa
 program; a figure is the median over the rounds of its time by that of the unwatched session beside it. All three must give the same trace.
 """
 import argparse
-import base64
 import json
 import os
 import re
-import socket
 import statistics
-import struct
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "test/support"))
+from page_socket import PageSocket  # noqa: E402
+
 GOAL = 5.0  # [%]
-
-
-class Page:
-    """The socket of a page, which throws away what it gets."""
-
-    def __init__(self, address):
-        host, _, path = address.removeprefix("http://").partition("/")
-        self.host, self.path = host, "/" + path
-        self.socket = self.connect()
-        key = base64.b64encode(os.urandom(16)).decode()
-        self.request(self.socket, f"GET {self.path}socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n"
-                                  f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n")
-        self.rest = b""
-        while b"\r\n\r\n" not in self.rest:
-            self.rest += self.socket.recv(65536)
-        self.rest = self.rest.partition(b"\r\n\r\n")[2]
-        self.bytes = 0
-
-    def connect(self):
-        name, _, port = self.host.partition(":")
-        return socket.create_connection((name, int(port)), timeout=60)
-
-    @staticmethod
-    def request(to, text):
-        to.sendall(text.encode())
-
-    def send(self, command):
-        data, mask = json.dumps(command).encode(), os.urandom(4)
-        self.frame(0x1, bytes(byte ^ mask[i % 4] for i, byte in enumerate(data)), mask)
-
-    def frame(self, kind, masked, mask):
-        self.socket.sendall(bytes([0x80 | kind, 0x80 | len(masked)]) + mask + masked)  # of less than 126 bytes
-
-    def take(self, count):
-        while len(self.rest) < count:
-            data = self.socket.recv(1 << 20)
-            if not data:
-                raise ConnectionError("the server closed the page's socket")
-            self.rest += data
-        data, self.rest = self.rest[:count], self.rest[count:]
-        self.bytes += count
-        return data
-
-    def next(self):
-        """Kind and content of the next frame."""
-        head = self.take(2)
-        length = head[1] & 127
-        if length >= 126:
-            length = struct.unpack(">H", self.take(2))[0] if length == 126 else struct.unpack(">Q", self.take(8))[0]
-        return head[0] & 15, self.take(length)
-
-    def watch(self):
-        """As fast as possible, to the end and the report."""
-        self.send({"id": 1, "do": "pace", "value": "0"})
-        while True:
-            kind, content = self.next()
-            if kind == 9:
-                self.frame(0xA, content, bytes(4))
-            if kind == 1 and b'"over":' in content:
-                break
-        with self.connect() as report:
-            self.request(report, f"GET {self.path}report.html HTTP/1.1\r\nHost: {self.host}\r\n\r\n")
-            while report.recv(1 << 20):
-                pass
-        self.socket.close()
 
 
 def run(cdiff, arguments, folder, watched, paged):
@@ -93,14 +28,13 @@ def run(cdiff, arguments, folder, watched, paged):
     process = subprocess.Popen([cdiff, "run", *arguments, "--results", folder, "--overwrite", "--quiet", *(["--watch"] if watched else [])],
                                stderr=subprocess.PIPE, text=True)
     if watched:
-        address = re.search(r"http://\S+/", process.stderr.readline()).group(0)
-        page = Page(address)
+        page = PageSocket(next(found.group(0) for line in process.stderr if (found := re.search(r"http://\S+/", line))))
         if paged:
-            page.watch()
+            page.ask({"do": "pace", "value": "0"})
+            page.wait_for_end()
             taken = page.bytes
         else:
-            page.send({"id": 1, "do": "pace", "value": "0"})
-            time.sleep(0.05)
+            page.ask({"do": "pace", "value": "0"})
             page.socket.close()
     process.stderr.close()
     _, _, usage = os.wait4(process.pid, 0)
