@@ -228,8 +228,7 @@ std::string htmlReport(const record::SessionResult& result) {
                       banner(result) + lateBanner(result) + tiles(result) + pageContents(parts) +
                           pageSections(parts),
                       core::jsonElement("playback", playbackJson(result, canvas)) +
-                          core::scriptElement(kPlayerScript) +
-                          core::scriptElement(kReportScript));
+                          core::scriptElement(kPlayerScript) + core::scriptElement(kReportScript));
 }
 
 std::optional<std::string> withWhatIf(const std::string& page,
