@@ -183,12 +183,38 @@ void DiffusionPlanner::solvePart(std::uint64_t tick, Worker& worker,
   }
 }
 
+namespace {
+
+/// The plans that were weighed, in the map frame; nothing where there
+/// was no choice.
+std::vector<planning::PlannedCandidate> plannedCandidates(const geometry::Pose2d& pose,
+                                                          const ChosenPlan& chosen) {
+  constexpr auto kStride =
+      static_cast<Eigen::Index>(planning::kCandidateStep / traffic::kRolloutStep + 0.5);
+  const auto& plans = chosen.weighed.plans;
+  const auto& scores = chosen.weighed.scores;
+  std::vector<planning::PlannedCandidate> candidates;
+  for (std::size_t i = 0; plans.size() > 1 && i < plans.size(); ++i) {
+    if (!plans[i].allFinite()) continue;
+    planning::PlannedCandidate& candidate = candidates.emplace_back();
+    candidate.score = -scores[i].value;
+    candidate.chosen = static_cast<std::int64_t>(i) == chosen.report.chosen;
+    for (Eigen::Index row = kStride - 1; row < plans[i].rows(); row += kStride)
+      candidate.places.push_back(pose.toMap(plans[i].row(row).head<2>().transpose()));
+  }
+  return candidates;
+}
+
+}  // namespace
+
 planning::PlannedAction DiffusionPlanner::actionOf(const planning::PlanningTask& task,
                                                    const ChosenPlan& chosen) const {
   const traffic::VehicleState& start = task.vehicle->state;
-  const auto& [plan, driven, report] = chosen;
+  const traffic::Rollout& plan = chosen.plan;
+  const traffic::Rollout& driven = chosen.driven;
   planning::PlannedAction planned{task.slot, task.vehicle->id, {}, {}};
-  planned.guidance = report;
+  planned.guidance = chosen.report;
+  planned.candidates = plannedCandidates(start.pose(), chosen);
   for (Eigen::Index row = 0; row < driven.rows(); ++row) {
     const double speed = row == 0 ? start.speed : driven(row - 1, traffic::kRolloutSpeed);
     const traffic::ControlAction action =

@@ -71,7 +71,8 @@ PlanCandidates PlanChoice::candidatesOf(const std::vector<diffusion::SampledTraj
 
 ChosenPlan PlanChoice::among(const std::vector<diffusion::SampledTrajectory>& samples,
                              std::size_t first, const DiffusionSituation& situation) const {
-  const auto [plans, driven, scores] = candidatesOf(samples, first, situation);
+  PlanCandidates candidates = candidatesOf(samples, first, situation);
+  const auto& [plans, driven, scores] = candidates;
   const std::size_t best = choosePlan(plans, scores, situation.previous, hysteresis_);
   ChosenPlan chosen{plans[best], driven[best], situation.objectives[best]->report(plans[best])};
   chosen.report.candidates = guidance_.candidates;
@@ -81,6 +82,7 @@ ChosenPlan PlanChoice::among(const std::vector<diffusion::SampledTrajectory>& sa
     chosen.report.trust_region_share =
         static_cast<double>(sample.trust_region_hits) / static_cast<double>(sample.guided_steps);
   }
+  chosen.weighed = std::move(candidates);
   return chosen;
 }
 

@@ -25,18 +25,19 @@ std::size_t choosePlan(const std::vector<traffic::Rollout>& plans,
                        const std::vector<guidance::Score>& scores,
                        const std::optional<traffic::Rollout>& previous, double hysteresis);
 
-/// The plan that a vehicle drives (rollouts [T, 7], body frame, SI units).
-struct ChosenPlan {
-  traffic::Rollout plan;    ///< as it was sampled
-  traffic::Rollout driven;  ///< what the vehicle does when the plan's actions are executed
-  guidance::GuidanceReport report;
-};
-
 /// The plans of a vehicle that are chosen among, one entry per sample.
 struct PlanCandidates {
   std::vector<traffic::Rollout> plans;   ///< as sampled
   std::vector<traffic::Rollout> driven;  ///< what the vehicle does
   std::vector<guidance::Score> scores;
+};
+
+/// The plan that a vehicle drives (rollouts [T, 7], body frame, SI units).
+struct ChosenPlan {
+  traffic::Rollout plan;    ///< as it was sampled
+  traffic::Rollout driven;  ///< what the vehicle does when the plan's actions are executed
+  guidance::GuidanceReport report;
+  PlanCandidates weighed{};  ///< what it was chosen from by its score; empty in mode challenging
 };
 
 /// Chooses among the candidates of a vehicle by its objectives, those first that keep on the road

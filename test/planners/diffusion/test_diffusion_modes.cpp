@@ -180,6 +180,10 @@ TEST_F(CandidateChoice, DrivesTheCandidateThatTheChoiceNames) {
     const std::size_t chosen = choosePlan(plans_, scores_, previous, options_.hysteresis);
     EXPECT_EQ(planned.guidance.candidates, kCandidates);
     ASSERT_EQ(planned.guidance.chosen, static_cast<std::int64_t>(chosen)) << tick;
+    ASSERT_EQ(planned.candidates.size(), static_cast<std::size_t>(kCandidates));
+    EXPECT_TRUE(planned.candidates[chosen].chosen);
+    EXPECT_EQ(planned.candidates[chosen].places[1], planned.rollout[9].state.position) << "at 1 s";
+    EXPECT_EQ(planned.candidates[chosen].score, -scores_[chosen].value);
     const traffic::VehicleState& start = snapshot_.vehicles[1].state;
     for (Eigen::Index row = 0; row < plans_[chosen].rows(); ++row) {
       const planning::RolloutPoint& point = planned.rollout[static_cast<std::size_t>(row)];
