@@ -158,10 +158,21 @@ void SignalHeads::look(const std::vector<View>& views,
                        const std::vector<traffic::SignalState>& signals) {
   head_grid_.visible(views, visible_heads_);
   mast_grid_.visible(views, visible_masts_);
-  std::fill(states_.begin(), states_.end(), nullptr);
   if (std::all_of(visible_heads_.begin(), visible_heads_.end(),
                   [](const std::vector<int>& heads) { return heads.empty(); }))
     return;
+  read(signals);
+}
+
+std::vector<LampColor> SignalHeads::colorsOf(const std::vector<traffic::SignalState>& signals) {
+  read(signals);
+  std::vector<LampColor> colors;
+  for (const SignalHead& head : heads_) colors.push_back(colorOf(head));
+  return colors;
+}
+
+void SignalHeads::read(const std::vector<traffic::SignalState>& signals) {
+  std::fill(states_.begin(), states_.end(), nullptr);
   for (const traffic::SignalState& signal : signals) {
     const auto known = signal_by_id_.find(signal.id);
     if (known != signal_by_id_.end()) {

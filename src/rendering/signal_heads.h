@@ -46,7 +46,13 @@ class SignalHeads {
   void drawStopLines(std::size_t index, const View& view, Canvas& canvas) const;
   void drawLamps(std::size_t index, const View& view, Canvas& canvas) const;
 
+  /// The ends of all lanes that a light controls.
+  const std::vector<SignalHead>& heads() const { return heads_; }
+  /// Their colors, in that order.
+  std::vector<LampColor> colorsOf(const std::vector<traffic::SignalState>& signals);
+
  private:
+  void read(const std::vector<traffic::SignalState>& signals);
   void addLane(const map::Lane& lane);
   void addMast(const map::RoadNetwork& network, const std::string& edge);
   LampColor colorOf(const SignalHead& head) const;
