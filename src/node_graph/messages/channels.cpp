@@ -314,15 +314,18 @@ Rows displayRows() {
                              "How a node stands with a tick.")
           .heardBy(Party::kSimulator),
       Row::of<MarkerArray>(ChannelId::kMarkers, "markers", Party::kMetrics,
-                           "Vehicles, conflict points and routes for rviz."),
+                           "What happens, for rviz, while anyone subscribes."),
       Row::of<MarkerArray>(ChannelId::kMapMarkers, "markers/map", Party::kMetrics,
-                           "Network and ego route for rviz.")
+                           "Roads and ego route for rviz, once anyone subscribes.")
           .latched(),
+      Row::of<sensor_msgs::Image>(ChannelId::kFrontView, "front_view", Party::kMetrics,
+                                  "What the nearest CBV sees, with its plan, for people, while "
+                                  "anyone subscribes; before the first CBV what the ego sees."),
       Row::of<MarkerArray>(ChannelId::kRolloutMarkers, "markers/rollouts", Party::kCbvPlanner,
                            "Plans of CBVs for rviz, while anyone subscribes."),
       Row::of<MarkerArray>(ChannelId::kPerceptionMarkers, "markers/perception", Party::kEgoPlanner,
-                           "What the ego's planner believes to see, for rviz, while anyone "
-                           "subscribes; empty where it does not say.")};
+                           "What the ego's planner intends, attends to and believes to see, for "
+                           "rviz, while anyone subscribes; empty where it does not say.")};
 }
 
 }  // namespace

@@ -161,6 +161,7 @@ enum class ChannelId {
   kTickAck,
   kMarkers,
   kMapMarkers,
+  kFrontView,
   kRolloutMarkers,
   kPerceptionMarkers
 };

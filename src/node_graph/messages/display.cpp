@@ -86,16 +86,24 @@ nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time) {
   return message;
 }
 
+namespace {
+
+geometry_msgs::TransformStamped transformOf(const traffic::Vehicle& vehicle, double time) {
+  auto transform = transformBetween(frameId(kMapFrame), frameOf(vehicle), time);
+  transform.transform.translation.x = vehicle.state.position.x();
+  transform.transform.translation.y = vehicle.state.position.y();
+  transform.transform.translation.z = vehicle.state.elevation;
+  transform.transform.rotation = toQuaternion(vehicle.state.heading);
+  return transform;
+}
+
+}  // namespace
+
 Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot) {
   Transforms transforms;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) continue;
-    auto transform = transformBetween(frameId(kMapFrame), frameOf(vehicle), snapshot.time);
-    transform.transform.translation.x = vehicle.state.position.x();
-    transform.transform.translation.y = vehicle.state.position.y();
-    transform.transform.translation.z = vehicle.state.elevation;
-    transform.transform.rotation = toQuaternion(vehicle.state.heading);
-    transforms.push_back(transform);
+    transforms.push_back(transformOf(vehicle, snapshot.time));
   }
   return transforms;
 }
@@ -123,6 +131,16 @@ int slotOf(const traffic::Vehicle& vehicle) {
 
 }  // namespace
 
+std::optional<geometry_msgs::TransformStamped> slotTransform(
+    const traffic::TrafficSnapshot& snapshot, int slot) {
+  const traffic::Vehicle* cbv = snapshot.cbv(slot);
+  if (cbv == nullptr) cbv = snapshot.ego();
+  if (cbv == nullptr) return std::nullopt;
+  auto transform = transformOf(*cbv, snapshot.time);
+  transform.child_frame_id = "cbv_" + std::to_string(slot) + "/base_link";
+  return transform;
+}
+
 tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
                             const session::VehicleRigs* rigs) {
   tf2_msgs::TFMessage message;
@@ -149,7 +167,11 @@ void Display::publish(const traffic::TrafficSnapshot& snapshot) {
   if (sensors_) sensors_->publish(snapshot);
   publishOdometry(snapshot);
   if (rigs_) mountCameras(snapshot);
-  transforms_.sendTransform(vehicleTransforms(snapshot));
+  Transforms transforms = vehicleTransforms(snapshot);
+  for (int slot = 0; slot < static_cast<int>(odometry_.size()); ++slot) {
+    if (const auto followed = slotTransform(snapshot, slot)) transforms.push_back(*followed);
+  }
+  transforms_.sendTransform(transforms);
 }
 
 void Display::publishOdometry(const traffic::TrafficSnapshot& snapshot) {

@@ -29,6 +29,10 @@ nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time);
 using Transforms = std::vector<geometry_msgs::TransformStamped>;
 /// Transforms of ego and CBVs.
 Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot);
+/// `map` -> "cbv_K/base_link" for a slot K, so that a view can follow whoever is in it: the pose of
+/// its CBV, before there is one of the ego; nullopt without both.
+std::optional<geometry_msgs::TransformStamped> slotTransform(
+    const traffic::TrafficSnapshot& snapshot, int slot);
 /// A vehicle's base_link -> camera (x along the view, z up) -> camera_optical (x right, y down, z
 /// along the view); they never change.
 Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,

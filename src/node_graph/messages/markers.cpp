@@ -3,334 +3,302 @@
 #include "node_graph/messages/markers.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include "core/text.h"
-#include "e2e_cdiff/planning/perception.h"
-#include "node_graph/messages/perceived_conversions.h"
-#include "node_graph/messages/session_conversions.h"
-#include "node_graph/messages/traffic_conversions.h"
+#include "metrics/formulas/ttc_2d.h"
+#include "node_graph/messages/marker_parts.h"
+#include "node_graph/messages/plan_markers.h"
 
 namespace cdiff::node_graph {
 namespace {
 
+using traffic::Vehicle;
+using traffic::VehicleRole;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
+using Markers = std::vector<Marker>;
 
-constexpr double kLifetime = 0.5;  // [s] of simulated time
-constexpr double kLift = 0.05;     // [m] above the road, so that lines stay visible
+constexpr double kTrailTime = 4.0;     // [s]
+constexpr double kContactTime = 3.0;   // [s] that a contact stays
+constexpr double kTrailLift = 0.14;    // [m] above the road
+constexpr double kLabelBeside = 1.9;   // [m] from a vehicle's box, toward +y of the map
+constexpr double kDrivenLabel = 2.4;   // [m] height of a capital
+constexpr double kTrafficLabel = 1.6;  // [m]
+constexpr double kEventLabel = 2.0;    // [m]
+constexpr double kLabelHeight = 4.0;   // [m] of labels above the road: above all boxes
+constexpr double kSoon = 5.0;          // [s] to a collision with a vehicle that is no CBV
+constexpr double kNear = 60.0;         // [m] of centers
 
-struct Color {
-  float red;
-  float green;
-  float blue;
-  float alpha;
-};
-constexpr Color kEgoColor{0.86F, 0.15F, 0.15F, 1.0F};
-constexpr Color kCbvColor{0.55F, 0.20F, 0.75F, 1.0F};
-constexpr Color kBackgroundColor{0.25F, 0.45F, 0.85F, 0.9F};
-constexpr Color kLaneColor{0.55F, 0.55F, 0.55F, 1.0F};
-constexpr Color kJunctionColor{0.75F, 0.65F, 0.35F, 1.0F};
-constexpr Color kEgoRouteColor{0.90F, 0.45F, 0.45F, 0.8F};
-constexpr Color kConflictColor{1.0F, 0.80F, 0.10F, 1.0F};
-constexpr Color kRolloutColor{0.20F, 0.90F, 0.40F, 1.0F};
-constexpr Color kLabelColor{1.0F, 1.0F, 1.0F, 1.0F};
+std::string seconds(double value) { return core::formatFixed(value, 1) + " s"; }
 
-Marker makeMarker(const std::string& marker_namespace, int id, int type, const Color& color) {
-  Marker marker;
-  marker.header.frame_id = frameId(kMapFrame);
-  marker.ns = marker_namespace;
-  marker.id = id;
-  marker.type = type;
-  marker.action = Marker::ADD;
-  marker.pose.orientation.w = 1.0;
-  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
-  marker.color.r = color.red;
-  marker.color.g = color.green;
-  marker.color.b = color.blue;
-  marker.color.a = color.alpha;
-  return marker;
+std::string labelText(const Vehicle& vehicle) {
+  const std::string speed = core::formatFixed(vehicle.state.speed, 1);
+  if (vehicle.role == VehicleRole::kEgo) return "EGO  " + speed + " m/s";
+  if (vehicle.role == VehicleRole::kCbv) return "CBV " + vehicle.id + "  " + speed + " m/s";
+  return vehicle.id + "  " + speed;
 }
 
-Marker deleteAll() {
-  Marker marker = makeMarker("", 0, Marker::CUBE, kLaneColor);
-  marker.action = Marker::DELETEALL;
-  return marker;
+Eigen::Vector3d besideVehicle(const Vehicle& vehicle, double sign) {
+  const double reach = geometry::halfExtent(vehicle.box(), Eigen::Vector2d::UnitY()) + kLabelBeside;
+  return onVehicle(vehicle, {0.0, 0.0, kLabelHeight}) + Eigen::Vector3d(0.0, sign * reach, 0.0);
 }
 
-geometry_msgs::Point toPoint(const Eigen::Vector3d& position) {
-  geometry_msgs::Point point;
-  point.x = position.x();
-  point.y = position.y();
-  point.z = position.z() + kLift;
-  return point;
+void reserveVehicle(const Vehicle& vehicle, LabelRoom& room) {
+  const geometry::OrientedBox box = vehicle.box();
+  room.reserve(box.center, {geometry::halfExtent(box, Eigen::Vector2d::UnitX()),
+                            geometry::halfExtent(box, Eigen::Vector2d::UnitY())});
 }
 
-/// Both borders of a lane, as pairs of points.
-void addBorders(const map::Lane& lane, std::vector<geometry_msgs::Point>& pairs) {
-  const auto& points = lane.centerline.points();
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Eigen::Vector2d along = (points[i + 1] - points[i]).head<2>().normalized();
-    const Eigen::Vector2d side = 0.5 * lane.width * geometry::leftNormal(along);
-    for (const double sign : {1.0, -1.0}) {
-      const Eigen::Vector3d offset(sign * side.x(), sign * side.y(), 0.0);
-      pairs.push_back(toPoint(points[i] + offset));
-      pairs.push_back(toPoint(points[i + 1] + offset));
-    }
+/// An arrowhead on the roof that points ahead.
+void addHeading(const Vehicle& vehicle, Marker& list) {
+  const double front = 0.42 * vehicle.dimensions.length;
+  const double back = 0.05 * vehicle.dimensions.length;
+  const double half = 0.42 * vehicle.dimensions.width;
+  const double roof = vehicle.dimensions.height + 0.05;
+  addTriangle(list, onVehicle(vehicle, {front, 0.0, roof}), onVehicle(vehicle, {back, half, roof}),
+              onVehicle(vehicle, {back, -half, roof}), marker_color::kWhite);
+}
+
+void addOutline(const Vehicle& vehicle, Marker& list) {
+  const double ahead = 0.5 * vehicle.dimensions.length;
+  const double side = 0.5 * vehicle.dimensions.width;
+  const double roof = vehicle.dimensions.height + 0.03;
+  const Eigen::Vector3d corners[4] = {
+      onVehicle(vehicle, {ahead, side, roof}), onVehicle(vehicle, {ahead, -side, roof}),
+      onVehicle(vehicle, {-ahead, -side, roof}), onVehicle(vehicle, {-ahead, side, roof})};
+  const MarkerColor& color =
+      vehicle.role == VehicleRole::kBackground ? marker_color::kPlate : marker_color::kWhite;
+  for (std::size_t i = 0; i < 4; ++i) addSegment(list, corners[i], corners[(i + 1) % 4], color);
+}
+
+void addConflicts(const cbv::CbvSelection& selection, LabelRoom& room, Markers& markers) {
+  Labels labels("conflict_labels", &room);
+  for (const cbv::CbvAssignment& assignment : selection.assignments) {
+    const cbv::ConflictPoint& conflict = assignment.conflict_point;
+    Marker ball =
+        makeMarker("conflict_points", assignment.slot, Marker::CYLINDER, marker_color::kConflict);
+    ball.pose.position = toMarkerPoint(conflict.position, 0.2);
+    ball.scale.x = ball.scale.y = 2.4;
+    ball.scale.z = 0.1;
+    markers.push_back(ball);
+    room.reserve(conflict.position.head<2>(), {1.2, 1.2});
+    labels.add(assignment.slot,
+               "conflict point: ego in " + seconds(conflict.ego_arrival) + ", " +
+                   assignment.vehicle_id + " in " + seconds(conflict.cbv_arrival),
+               conflict.position + Eigen::Vector3d(0.0, -3.0 - 3.0 * assignment.slot, kLabelHeight),
+               kEventLabel, marker_color::kConflict);
+    if (assignment.conflict_aware_route.empty()) continue;
+    const MarkerColor& cbv = marker_color::kCbv;
+    appendMarkers(markers, routeMarkers("conflict_aware_routes", assignment.slot,
+                                        assignment.conflict_aware_route, marker_color::kCbvRoute));
+    const Eigen::Vector3d goal = assignment.conflict_aware_route.path().points().back();
+    Marker disc = makeMarker("cbv_goals", assignment.slot, Marker::CYLINDER, cbv);
+    disc.pose.position = toMarkerPoint(goal, 0.15);
+    disc.scale.x = disc.scale.y = 3.0;
+    disc.scale.z = 0.1;
+    markers.push_back(disc);
+    labels.add(100 + assignment.slot, "goal of " + assignment.vehicle_id,
+               goal + Eigen::Vector3d(0.0, -3.4, kLabelHeight), kEventLabel, cbv);
   }
+  appendMarkers(markers, labels.markers());
 }
 
-Marker laneMarker(const map::RoadNetwork& network) {
-  Marker marker = makeMarker("lanes", 0, Marker::LINE_LIST, kLaneColor);
-  marker.scale.x = 0.12;
-  for (const map::Lane& lane : network.lanes()) {
-    if (lane.allows_cars && !lane.internal) addBorders(lane, marker.points);
-  }
-  return marker;
-}
-
-Marker junctionMarker(const map::RoadNetwork& network) {
-  Marker marker = makeMarker("junctions", 0, Marker::LINE_LIST, kJunctionColor);
-  marker.scale.x = 0.12;
-  for (const map::Junction& junction : network.junctions()) {
-    for (std::size_t i = 0; i < junction.shape.size(); ++i) {
-      marker.points.push_back(toPoint(junction.shape[i]));
-      marker.points.push_back(toPoint(junction.shape[(i + 1) % junction.shape.size()]));
-    }
-  }
-  return marker;
-}
-
-Marker routeMarker(const std::string& marker_namespace, int id, const map::Route& route,
-                   const Color& color) {
-  Marker marker = makeMarker(marker_namespace, id, Marker::LINE_STRIP, color);
-  marker.scale.x = 0.4;
-  for (const Eigen::Vector3d& point : route.path().points())
-    marker.points.push_back(toPoint(point));
-  return marker;
-}
-
-const Color& colorOf(traffic::VehicleRole role) {
-  if (role == traffic::VehicleRole::kEgo) return kEgoColor;
-  return role == traffic::VehicleRole::kCbv ? kCbvColor : kBackgroundColor;
-}
-
-Marker vehicleMarker(const traffic::Vehicle& vehicle, int id) {
-  Marker marker = makeMarker("vehicles", id, Marker::CUBE, colorOf(vehicle.role));
-  marker.pose.position.x = vehicle.state.position.x();
-  marker.pose.position.y = vehicle.state.position.y();
-  marker.pose.position.z = vehicle.state.elevation + 0.5 * vehicle.dimensions.height;
-  marker.pose.orientation.z = std::sin(0.5 * vehicle.state.heading);
-  marker.pose.orientation.w = std::cos(0.5 * vehicle.state.heading);
-  marker.scale.x = vehicle.dimensions.length;
-  marker.scale.y = vehicle.dimensions.width;
-  marker.scale.z = vehicle.dimensions.height;
-  return marker;
-}
-
-Marker labelMarker(const traffic::Vehicle& vehicle, int id) {
-  Marker marker = makeMarker("labels", id, Marker::TEXT_VIEW_FACING, kLabelColor);
-  marker.pose.position.x = vehicle.state.position.x();
-  marker.pose.position.y = vehicle.state.position.y();
-  marker.pose.position.z = vehicle.state.elevation + vehicle.dimensions.height + 1.0;
-  marker.scale.z = 1.2;
-  marker.text = vehicle.id;
-  return marker;
-}
-
-Marker conflictMarker(const cbv::CbvAssignment& assignment) {
-  Marker marker = makeMarker("conflict_points", assignment.slot, Marker::SPHERE, kConflictColor);
-  marker.pose.position = toPoint(assignment.conflict_point.position);
-  return marker;
-}
-
-}  // namespace
-
-visualization_msgs::MarkerArray mapMarkers(const session::SessionSetup& setup) {
-  visualization_msgs::MarkerArray array;
-  array.markers = {deleteAll(), laneMarker(setup.network()), junctionMarker(setup.network()),
-                   routeMarker("ego_route", 0, setup.egoRoute(), kEgoRouteColor)};
-  return array;
-}
-
-namespace {
-
-/// Boxes of the standard size: a report does not hold the ego's.
-Marker ghostMarker(const planning::PlannedAction& action) {
-  const guidance::ChallengeReport& report = action.guidance.challenge;
-  traffic::Vehicle ghost;
-  ghost.state = report.ghost.value_or(ghost.state);
-  Marker marker = vehicleMarker(ghost, action.slot);
-  marker.ns = "ghosts";
-  marker.color.r = marker.color.g = marker.color.b = 1.0F;
-  marker.color.a = 0.4F;
-  if (!report.ghost) marker.action = Marker::DELETE;
-  return marker;
-}
-
-Marker challengeMarker(const planning::PlannedAction& action) {
-  const guidance::ChallengeReport& report = action.guidance.challenge;
-  traffic::Vehicle place;
-  if (!action.rollout.empty()) place.state = action.rollout.front().state;
-  place.state.elevation += 2.0 * place.dimensions.height;  // above the label of the vehicle
-  Marker marker = labelMarker(place, action.slot);
-  marker.ns = "challenge";
-  marker.text = report.state;
-  if (!report.reason.empty()) marker.text += ": " + report.reason;
-  if (report.ghost && report.last_brake_time)
-    marker.text += ", brake within " + core::formatFixed(*report.last_brake_time, 1) + " s";
-  if (report.state.empty()) marker.action = Marker::DELETE;
-  return marker;
-}
-
-}  // namespace
-
-MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions, double time) {
-  constexpr double kRolloutLift = 0.3;  // [m] above the route
-  MarkerArray array;
+/// What CBVs intend, in words, beside the ends of their plans.
+void addIntentions(const std::vector<planning::PlannedAction>& actions, LabelRoom& room,
+                   Markers& markers) {
+  constexpr double kBeside = 3.0;  // [m]
+  Labels labels("plan_labels", &room);
   for (const planning::PlannedAction& action : actions) {
-    Marker marker = makeMarker("rollouts", action.slot, Marker::LINE_STRIP, kRolloutColor);
-    if (action.rollout.size() < 2) marker.action = Marker::DELETE;  // a line needs two points
-    marker.header.stamp = toStamp(time);
-    marker.lifetime = ros::Duration(kLifetime);
-    marker.scale.x = 0.5;
-    for (const planning::RolloutPoint& point : action.rollout) {
-      const Eigen::Vector2d& position = point.state.position;
-      marker.points.push_back(
-          toPoint({position.x(), position.y(), point.state.elevation + kRolloutLift}));
-    }
-    array.markers.push_back(marker);
-    for (Marker challenge : {ghostMarker(action), challengeMarker(action)}) {
-      challenge.header.stamp = toStamp(time);
-      challenge.lifetime = ros::Duration(kLifetime);
-      if (!action.guidance.challenge.state.empty()) array.markers.push_back(challenge);
-    }
+    if (action.slot == traffic::kEgoSlot || action.rollout.empty()) continue;
+    const traffic::VehicleState& end = action.rollout.back().state;
+    const Eigen::Vector3d place(end.position.x(), end.position.y() + kBeside,
+                                end.elevation + kLabelHeight);
+    labels.add(2 * action.slot, intentionText(action), place, kEventLabel, planColor(action));
+    const std::string challenge = challengeText(action);
+    if (challenge.empty()) continue;
+    labels.add(2 * action.slot + 1, challenge, place, kEventLabel, marker_color::kWhite);
   }
-  return array;
+  appendMarkers(markers, labels.markers());
 }
 
-namespace {
-
-constexpr Color kPerceivedColor{1.0F, 0.55F, 0.0F, 1.0F};
-constexpr Color kForecastColor{1.0F, 0.85F, 0.30F, 1.0F};
-constexpr Color kOccupiedColor{0.90F, 0.20F, 0.55F, 1.0F};
-constexpr double kPerceivedLift = 0.2;  // [m] above the road
-
-Color lineColor(const std::string& kind) {
-  if (kind == "edge") return {0.95F, 0.25F, 0.20F, 1.0F};
-  return kind == "divider" ? Color{0.95F, 0.95F, 0.95F, 1.0F} : Color{0.20F, 0.75F, 0.90F, 1.0F};
+MarkerColor urgency(const std::optional<double>& time) {
+  if (!time || *time > kSoon) return marker_color::kSoft;
+  return *time < 1.5 ? marker_color::kEgo : marker_color::kConflict;
 }
 
-/// A line from point to point, as pairs.
-void addPairs(const std::vector<Eigen::Vector2d>& line, double z, Marker& marker) {
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    marker.points.push_back(toPoint({line[i].x(), line[i].y(), z}));
-    marker.points.push_back(toPoint({line[i + 1].x(), line[i + 1].y(), z}));
+/// The ego and each CBV, and others that it would soon touch, if all kept speed and direction.
+void addTimesToCollision(const traffic::TrafficSnapshot& snapshot, LabelRoom& room,
+                         Markers& markers) {
+  const Vehicle* ego = snapshot.ego();
+  if (ego == nullptr) return;
+  Marker lines = makeMarker("ttc", 0, Marker::LINE_LIST, marker_color::kSoft);
+  lines.scale.x = 0.12;
+  Labels labels("ttc_labels", &room);
+  int id = 0;
+  for (const Vehicle& other : snapshot.vehicles) {
+    const double distance = (other.state.position - ego->state.position).norm();
+    if (&other == ego || distance > kNear || traffic::onDifferentLevels(*ego, other)) continue;
+    const auto time = metrics::timeToCollision2d({ego->box(), ego->state.velocity()},
+                                                 {other.box(), other.state.velocity()});
+    const bool cbv = other.role == VehicleRole::kCbv;
+    if (!cbv && !(time && *time < kSoon)) continue;
+    const Eigen::Vector3d from = onVehicle(*ego, {0.0, 0.0, 2.0});
+    const Eigen::Vector3d to = onVehicle(other, {0.0, 0.0, 2.0});
+    const MarkerColor color = urgency(time);
+    addSegment(lines, from, to, color);
+    const std::string gap = core::formatFixed(geometry::distance(ego->box(), other.box()), 1);
+    labels.add(id++,
+               (time ? "TTC " + seconds(*time) : std::string("no collision course")) + ", gap " +
+                   gap + " m",
+               0.5 * (from + to) + Eigen::Vector3d(0.0, 0.0, kLabelHeight - 2.0), kTrafficLabel,
+               color);
   }
-}
-
-Marker perceivedVehicleMarker(const planning::PerceivedVehicle& seen, int id) {
-  traffic::Vehicle vehicle;
-  vehicle.state = seen.state;
-  vehicle.dimensions = seen.dimensions;
-  Marker marker = vehicleMarker(vehicle, id);
-  marker.ns = "perceived_vehicles";
-  marker.color.r = kPerceivedColor.red;
-  marker.color.g = kPerceivedColor.green;
-  marker.color.b = kPerceivedColor.blue;
-  marker.color.a = static_cast<float>(seen.score);
-  return marker;
-}
-
-Marker forecastMarker(const planning::Perception& perception, double z) {
-  Marker marker = makeMarker("forecasts", 0, Marker::LINE_LIST, kForecastColor);
-  marker.scale.x = 0.3;
-  for (const planning::PerceivedVehicle& vehicle : perception.vehicles) {
-    if (vehicle.forecasts.empty()) continue;
-    std::vector<Eigen::Vector2d> way = planning::likeliest(vehicle.forecasts).places;
-    way.insert(way.begin(), vehicle.state.position);
-    addPairs(way, z, marker);
-  }
-  return marker;
-}
-
-Marker perceivedLineMarker(const planning::PerceivedLine& line, int id, double z) {
-  Marker marker = makeMarker("perceived_lines", id, Marker::LINE_LIST, lineColor(line.kind));
-  marker.scale.x = 0.25;
-  addPairs(line.points, z, marker);
-  return marker;
-}
-
-Marker occupancyMarker(const planning::PerceivedOccupancy& occupancy, int id, double z) {
-  Marker marker = makeMarker("occupancy", id, Marker::CUBE_LIST, kOccupiedColor);
-  marker.color.a = static_cast<float>(1.0 / (1.0 + occupancy.time));
-  marker.pose.orientation.z = std::sin(0.5 * occupancy.frame.heading);
-  marker.pose.orientation.w = std::cos(0.5 * occupancy.frame.heading);
-  marker.pose.position = toPoint({occupancy.frame.position.x(), occupancy.frame.position.y(), z});
-  marker.scale.x = marker.scale.y = occupancy.cell;
-  marker.scale.z = 0.1;
-  for (const Eigen::Vector2d& center : planning::occupiedCells(occupancy)) {
-    marker.points.emplace_back();
-    marker.points.back().x = center.x();
-    marker.points.back().y = center.y();
-  }
-  return marker;
+  if (!lines.points.empty()) markers.push_back(lines);
+  appendMarkers(markers, labels.markers());
 }
 
 }  // namespace
 
-MarkerArray perceptionMarkers(const planning::Perception& perception, double elevation,
-                              double time) {
-  const double z = elevation + kPerceivedLift;
-  MarkerArray array;
-  for (const planning::PerceivedVehicle& vehicle : perception.vehicles)
-    array.markers.push_back(
-        perceivedVehicleMarker(vehicle, static_cast<int>(array.markers.size())));
-  for (const planning::PerceivedLine& line : perception.lines)
-    array.markers.push_back(perceivedLineMarker(line, static_cast<int>(array.markers.size()), z));
-  for (const planning::PerceivedOccupancy& occupancy : perception.occupancy)
-    array.markers.push_back(occupancyMarker(occupancy, static_cast<int>(array.markers.size()), z));
-  array.markers.push_back(forecastMarker(perception, z));
-  for (Marker& marker : array.markers) {
-    marker.header.stamp = toStamp(time);
-    marker.lifetime = ros::Duration(kLifetime);
-  }
-  array.markers.erase(std::remove_if(array.markers.begin(), array.markers.end(),
-                                     [](const Marker& marker) {
-                                       const bool list = marker.type == Marker::LINE_LIST ||
-                                                         marker.type == Marker::CUBE_LIST;
-                                       return list && marker.points.empty();
-                                     }),
-                      array.markers.end());
-  array.markers.insert(array.markers.begin(), deleteAll());
-  return array;
-}
+SessionMarkers::SessionMarkers(const session::SessionSetup& setup) : signals_(setup.network()) {}
 
 int SessionMarkers::idOf(const std::string& vehicle_id) {
   return ids_.try_emplace(vehicle_id, static_cast<int>(ids_.size())).first->second;
 }
 
-visualization_msgs::MarkerArray SessionMarkers::build(const traffic::TrafficSnapshot& snapshot,
-                                                      const cbv::CbvSelection* selection) {
-  visualization_msgs::MarkerArray array;
-  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
-    array.markers.push_back(vehicleMarker(vehicle, idOf(vehicle.id)));
-    if (vehicle.role == traffic::VehicleRole::kBackground) continue;
-    array.markers.push_back(labelMarker(vehicle, idOf(vehicle.id)));
+void SessionMarkers::note(const traffic::TrafficSnapshot& snapshot) {
+  while (!contacts_.empty() && contacts_.front().begin + kContactTime < snapshot.time)
+    contacts_.pop_front();
+  for (const traffic::Contact& contact : snapshot.contacts) {
+    const Vehicle* first = snapshot.find(contact.first);
+    const Vehicle* second = snapshot.find(contact.second);
+    if (first == nullptr || second == nullptr) continue;
+    const Eigen::Vector3d place =
+        0.5 * (onVehicle(*first, {0.0, 0.0, 2.2}) + onVehicle(*second, {0.0, 0.0, 2.2}));
+    contacts_.push_back(
+        {snapshot.time, place,
+         "CONTACT " + contact.first + " and " + contact.second + " at " + seconds(snapshot.time)});
   }
-  if (selection != nullptr) {
-    for (const cbv::CbvAssignment& assignment : selection->assignments) {
-      array.markers.push_back(conflictMarker(assignment));
-      if (assignment.conflict_aware_route.empty()) continue;
-      array.markers.push_back(routeMarker("conflict_aware_routes", assignment.slot,
-                                          assignment.conflict_aware_route, kCbvColor));
+}
+
+void SessionMarkers::addVehicles(const traffic::TrafficSnapshot& snapshot, LabelRoom& room,
+                                 Markers& markers) {
+  Marker headings = makeMarker("headings", 0, Marker::TRIANGLE_LIST, marker_color::kWhite);
+  Marker outlines = makeMarker("outlines", 0, Marker::LINE_LIST, marker_color::kWhite);
+  outlines.scale.x = 0.16;
+  Labels driven("labels", &room);
+  Labels others("traffic_labels", &room);
+  for (const Vehicle& vehicle : snapshot.vehicles) {
+    const int id = idOf(vehicle.id);
+    const MarkerColor& color = markerColorOf(vehicle.role);
+    markers.push_back(boxMarker("vehicles", id, vehicle, color));
+    addHeading(vehicle, headings);
+    addOutline(vehicle, outlines);
+    const bool traffic = vehicle.role == VehicleRole::kBackground;
+    (traffic ? others : driven)
+        .add(id, labelText(vehicle), besideVehicle(vehicle, 1.0),
+             traffic ? kTrafficLabel : kDrivenLabel, traffic ? marker_color::kWhite : color);
+  }
+  if (!headings.points.empty()) appendMarkers(markers, {headings, outlines});
+  appendMarkers(markers, others.markers());
+  appendMarkers(markers, driven.markers());
+}
+
+/// The older the fainter.
+void SessionMarkers::addTrails(const traffic::TrafficSnapshot& snapshot, Markers& markers) {
+  for (auto trail = trails_.begin(); trail != trails_.end();)
+    trail = snapshot.find(trail->first) == nullptr ? trails_.erase(trail) : std::next(trail);
+  Marker lines = makeMarker("trails", 0, Marker::LINE_LIST, marker_color::kWhite);
+  lines.scale.x = 0.35;
+  for (const Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == VehicleRole::kBackground) continue;
+    Trail& trail = trails_[vehicle.id];
+    trail.emplace_back(snapshot.time, onVehicle(vehicle, {0.0, 0.0, kTrailLift}));
+    while (trail.front().first + kTrailTime < snapshot.time) trail.pop_front();
+    MarkerColor color = markerColorOf(vehicle.role);
+    for (std::size_t i = 1; i < trail.size(); ++i) {
+      const double age = (snapshot.time - trail[i].first) / kTrailTime;
+      color.alpha = static_cast<float>(0.9 * (1.0 - age));
+      addSegment(lines, trail[i - 1].second, trail[i].second, color);
     }
   }
-  for (Marker& marker : array.markers) {
-    marker.header.stamp = toStamp(snapshot.time);
-    marker.lifetime = ros::Duration(kLifetime);
+  if (!lines.points.empty()) markers.push_back(lines);
+}
+
+void SessionMarkers::addContacts(LabelRoom& room, Markers& markers) const {
+  Labels labels("contact_labels", &room);
+  int id = 0;
+  for (const ShownContact& contact : contacts_) {
+    Marker ball = makeMarker("contacts", id, Marker::SPHERE, marker_color::kContact);
+    ball.pose.position = toMarkerPoint(contact.place);
+    ball.scale.x = ball.scale.y = 2.0;
+    ball.scale.z = 0.6;
+    markers.push_back(ball);
+    labels.add(id++, contact.text, contact.place + Eigen::Vector3d(0.0, -4.5, 2.0), kDrivenLabel,
+               marker_color::kContact);
   }
-  if (first_) array.markers.insert(array.markers.begin(), deleteAll());
+  appendMarkers(markers, labels.markers());
+}
+
+/// A stop line in its light's color.
+void SessionMarkers::addSignals(const traffic::TrafficSnapshot& snapshot, Markers& markers) {
+  constexpr MarkerColor kLamps[] = {marker_color::kWhite,
+                                    {1.0F, 0.15F, 0.10F, 1.0F},
+                                    {1.0F, 0.80F, 0.10F, 1.0F},
+                                    {0.15F, 0.95F, 0.35F, 1.0F}};
+  Marker lines = makeMarker("signals", 0, Marker::LINE_LIST, marker_color::kWhite);
+  lines.scale.x = 0.7;
+  const std::vector<rendering::LampColor> colors = signals_.colorsOf(snapshot.signals);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const rendering::SignalHead& head = signals_.heads()[i];
+    const Eigen::Vector2d left = geometry::leftNormal(head.forward) * (0.5 * head.width - 0.1);
+    const Eigen::Vector3d side(left.x(), left.y(), 0.0);
+    const Eigen::Vector3d middle = head.stop + Eigen::Vector3d(0.0, 0.0, 0.08);
+    addSegment(lines, middle - side, middle + side, kLamps[static_cast<int>(colors[i])]);
+  }
+  if (!lines.points.empty()) markers.push_back(lines);
+}
+
+/// Below each vehicle that was looked at and not taken: its score, or why not.
+void SessionMarkers::addCandidates(const traffic::TrafficSnapshot& snapshot,
+                                   const cbv::CbvSelection& selection, LabelRoom& room,
+                                   Markers& markers) {
+  Labels labels("candidates", &room);
+  for (const cbv::RejectedCandidate& candidate : selection.rejected) {
+    const Vehicle* vehicle = snapshot.find(candidate.vehicle_id);
+    if (vehicle == nullptr) continue;
+    const bool scored = candidate.interaction_score > 0.0;
+    const std::string score = core::formatFixed(candidate.interaction_score, 2) + " ";
+    labels.add(idOf(vehicle->id), (scored ? score : "") + candidate.reason,
+               besideVehicle(*vehicle, -1.0), kTrafficLabel, marker_color::kSoft);
+  }
+  for (const cbv::CbvAssignment& assignment : selection.assignments) {
+    const Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
+    if (vehicle == nullptr) continue;
+    labels.add(idOf(vehicle->id),
+               "slot " + std::to_string(assignment.slot) + ", score " +
+                   core::formatFixed(assignment.interaction_score, 2),
+               besideVehicle(*vehicle, -1.0), kTrafficLabel, marker_color::kCbv);
+  }
+  appendMarkers(markers, labels.markers());
+}
+
+MarkerArray SessionMarkers::build(const session::TickRecord& record) {
+  const traffic::TrafficSnapshot& snapshot = *record.snapshot;
+  const cbv::CbvSelection* selection = record.selection;
+  MarkerArray array;
+  LabelRoom room;
+  for (const Vehicle& vehicle : snapshot.vehicles) reserveVehicle(vehicle, room);
+  addSignals(snapshot, array.markers);
+  addTrails(snapshot, array.markers);
+  addVehicles(snapshot, room, array.markers);
+  addContacts(room, array.markers);
+  if (selection != nullptr) addConflicts(*selection, room, array.markers);
+  if (record.actions != nullptr) addIntentions(*record.actions, room, array.markers);
+  addTimesToCollision(snapshot, room, array.markers);
+  if (selection != nullptr) addCandidates(snapshot, *selection, room, array.markers);
+  dateMarkers(array.markers, snapshot.time);
+  if (first_) array.markers.insert(array.markers.begin(), deleteAllMarkers());
   first_ = false;
   return array;
 }

@@ -15,6 +15,7 @@
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "node_graph/messages/display.h"
+#include "node_graph/messages/map_markers.h"
 #include "node_graph/messages/slot_figures.h"
 #include "node_graph/node_main.h"
 #include "node_graph/nodes/service_link.h"
@@ -87,7 +88,8 @@ void MetricsNode::startSession(const msgs::SessionInfo& info) {
   reports_ = advertise<msgs::MetricReport>(ChannelId::kMetrics);
   marker_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMarkers);
   map_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMapMarkers);
-  map_output_.publish(mapMarkers(*setup_));
+  view_output_ = advertise<sensor_msgs::Image>(ChannelId::kFrontView);
+  markers_ = std::make_unique<SessionMarkers>(*setup_);
   advertiseFigures();
   openPage();
   listenToAnswers(Party::kMetrics, setup_->options());
@@ -127,7 +129,7 @@ bool MetricsNode::handle(const Snapshot& message, bool superseded) {
   note(tick.record().latencies);
   if (const auto report = reporter_->report(tick.snapshot(), writer_->tickMeasures()))
     reports_.publish(report);
-  show(tick.snapshot(), tick.selection());
+  show(tick.record());
   forgetUntil(message->tick);
   last_ = tick.snapshot();
   return true;
@@ -141,19 +143,31 @@ void MetricsNode::note(const std::vector<session::PlannerLatency>& latencies) {
   }
 }
 
-void MetricsNode::show(const traffic::TrafficSnapshot& snapshot,
-                       const cbv::CbvSelection* selection) {
+void MetricsNode::show(const session::TickRecord& record) {
+  const traffic::TrafficSnapshot& snapshot = *record.snapshot;
   const bool final = snapshot.status != traffic::SessionStatus::kRunning;
+  markers_->note(snapshot);
   if (!snapshot.decision_tick && !final) return;
-  if (marker_output_.getNumSubscribers() > 0)
-    marker_output_.publish(markers_.build(snapshot, selection));
-  if (selection != nullptr) {
-    for (const SlotFigure& figure : slotFigures(snapshot, *selection)) {
+  showInRviz(record);
+  if (record.selection != nullptr) {
+    for (const SlotFigure& figure : slotFigures(snapshot, *record.selection)) {
       std_msgs::Float64 number;
       number.data = figure.value;
       figures_.at(figure.topic).publish(number);
     }
   }
+}
+
+/// What nobody subscribes to is not made.
+void MetricsNode::showInRviz(const session::TickRecord& record) {
+  if (marker_output_.getNumSubscribers() > 0) marker_output_.publish(markers_->build(record));
+  if (!map_shown_ && map_output_.getNumSubscribers() > 0) {
+    map_output_.publish(mapMarkers(*setup_));
+    map_shown_ = true;
+  }
+  if (view_output_.getNumSubscribers() == 0) return;
+  if (!front_view_) front_view_ = std::make_unique<FrontView>(*setup_);
+  view_output_.publish(front_view_->draw(*record.snapshot, record.actions));
 }
 
 void MetricsNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {

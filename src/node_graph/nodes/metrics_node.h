@@ -10,6 +10,7 @@
 
 #include "node_graph/lockstep/participant.h"
 #include "node_graph/messages/display.h"
+#include "node_graph/messages/front_view.h"
 #include "node_graph/messages/markers.h"
 #include "page/result_writer.h"
 #include "video/session_video.h"
@@ -40,7 +41,8 @@ class MetricsNode : public Observer {
   void note(const std::vector<session::PlannerLatency>& latencies);
   void advertiseFigures();
   void openPage();
-  void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
+  void show(const session::TickRecord& record);
+  void showInRviz(const session::TickRecord& record);
   double wallSeconds() const;
   int finishVideo(int exit_code);
 
@@ -50,7 +52,8 @@ class MetricsNode : public Observer {
   std::unique_ptr<video::SessionVideo> video_;  ///< where the scenario asks for it
   std::unique_ptr<watch::LiveSession> live_;    ///< where the launch file asks for it
   std::unique_ptr<MetricReporter> reporter_;
-  SessionMarkers markers_;
+  std::unique_ptr<SessionMarkers> markers_;
+  std::unique_ptr<FrontView> front_view_;   ///< once anyone subscribes
   traffic::TrafficSnapshot last_;           ///< last snapshot observed
   std::optional<Clock::time_point> begin_;  ///< first snapshot
   double slowest_planner_ms_ = 0.0;
@@ -58,6 +61,8 @@ class MetricsNode : public Observer {
   ros::Publisher reports_;
   ros::Publisher marker_output_;
   ros::Publisher map_output_;
+  bool map_shown_ = false;
+  ros::Publisher view_output_;
   std::map<Topic, ros::Publisher> figures_;  ///< of CBVs
 };
 

@@ -7,8 +7,8 @@
 #include "core/text.h"
 #include "metrics/formulas/quantiles.h"
 #include "node_graph/lockstep/tick_answers.h"
-#include "node_graph/messages/markers.h"
 #include "node_graph/messages/message_checks.h"
+#include "node_graph/messages/plan_markers.h"
 #include "node_graph/session_graph.h"
 #include "session/closed_loop.h"
 
@@ -119,12 +119,19 @@ bool EgoPlannerNode::handle(const Snapshot& message, bool superseded) {
   statistics_.observe(decision);
   controls_.publish(shared(
       toMsg(decision.actions.front(), snapshot, {name, decision.latency_ms, decision.fault})));
-  if (markers_.getNumSubscribers() > 0)
-    markers_.publish(perceptionMarkers(decision.actions.front().perception,
-                                       tasks.front().vehicle->state.elevation, snapshot.time));
+  if (markers_.getNumSubscribers() > 0) show(snapshot, decision);
   warnOf(name, decision);
   images().forgetBefore(message->tick);
   return true;
+}
+
+void EgoPlannerNode::show(const traffic::TrafficSnapshot& snapshot,
+                          const PlannerDecision& decision) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  const double elevation = ego == nullptr ? 0.0 : ego->state.elevation;
+  auto array = perceptionMarkers(decision.actions.front().perception, elevation, snapshot.time);
+  appendMarkers(array.markers, planMarkers(decision.actions, snapshot).markers);
+  markers_.publish(array);
 }
 
 void CbvPlannerNode::startSession(const msgs::SessionInfo& info) {
@@ -217,8 +224,7 @@ void CbvPlannerNode::publish(const traffic::TrafficSnapshot& snapshot,
     if (const AnyMessage message = makeMessage(topic, values))
       topic.row().type.publish(publisher, message);
   }
-  if (markers_.getNumSubscribers() > 0)
-    markers_.publish(rolloutMarkers(decision.actions, snapshot.time));
+  if (markers_.getNumSubscribers() > 0) markers_.publish(planMarkers(decision.actions, snapshot));
 }
 
 }  // namespace cdiff::node_graph

@@ -62,7 +62,7 @@ class SeeingParticipant : public Participant {
 };
 
 /// The ego's planner: snapshots and route in (and its images where the planner sees), its control
-/// out, and what it believes to see as markers while anyone subscribes.
+/// out, and what it intends and believes to see as markers while anyone subscribes.
 class EgoPlannerNode : public SeeingParticipant {
  public:
   using SeeingParticipant::SeeingParticipant;
@@ -80,6 +80,8 @@ class EgoPlannerNode : public SeeingParticipant {
   int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
+  void show(const traffic::TrafficSnapshot& snapshot, const PlannerDecision& decision);
+
   std::unique_ptr<session::SessionSetup> setup_;
   map::Route route_;
   std::unique_ptr<planning::Planner> planner_;

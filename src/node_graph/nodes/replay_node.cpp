@@ -19,7 +19,7 @@
 #include "node_graph/lockstep/decision_tracker.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/tick_record.h"
-#include "node_graph/messages/markers.h"
+#include "node_graph/messages/plan_markers.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_files.h"
@@ -176,7 +176,7 @@ void ReplayNode::publishPlans(const msgs::TrafficSnapshot& snapshot) {
   std::vector<planning::PlannedAction> actions = actionsOf(session_.answers().answers(snapshot));
   const auto of_ego = [](const planning::PlannedAction& action) { return action.slot == kEgoSlot; };
   actions.erase(std::remove_if(actions.begin(), actions.end(), of_ego), actions.end());
-  topics_.at(ChannelId::kRolloutMarkers).publish(rolloutMarkers(actions, snapshot.time));
+  topics_.at(ChannelId::kRolloutMarkers).publish(planMarkers(actions, fromMsg(snapshot)));
 }
 
 bool ReplayNode::disturbed() {

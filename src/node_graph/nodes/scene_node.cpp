@@ -6,6 +6,8 @@
 
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "node_graph/messages/map_markers.h"
+#include "node_graph/messages/plan_markers.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/topics.h"
 #include "node_graph/messages/traffic_conversions.h"
@@ -24,6 +26,7 @@ int SceneNode::run() {
   markers_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMarkers), kQueueSize);
   map_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMapMarkers), 1, true);
   rollouts_output_ = node_.advertise<MarkerArray>(name(ChannelId::kRolloutMarkers), kQueueSize);
+  view_output_ = node_.advertise<sensor_msgs::Image>(name(ChannelId::kFrontView), kQueueSize);
   const auto at_once = ros::TransportHints().tcpNoDelay();
   const ros::Subscriber inputs[] = {
       node_.subscribe<msgs::SessionInfo>(
@@ -48,7 +51,9 @@ void SceneNode::takeSession(const msgs::SessionInfo& info) {
     ROS_ERROR("the session cannot be shown: %s", error.what());
     return;
   }
-  markers_ = SessionMarkers();
+  markers_ = std::make_unique<SessionMarkers>(*setup_);
+  front_view_ = std::make_unique<FrontView>(*setup_);
+  plans_.clear();
   selection_.reset();
   map_output_.publish(mapMarkers(*setup_));
   listenToRollouts();
@@ -72,15 +77,28 @@ void SceneNode::takeSelection(const msgs::CbvSelection::ConstPtr& selection) {
 /// are those of the decision before.
 void SceneNode::takeTraffic(const msgs::TrafficSnapshot& message) {
   const bool final = message.status != msgs::TrafficSnapshot::RUNNING;
-  if (!setup_ || (!message.decision_tick && !final)) return;
+  if (!setup_) return;
   try {
-    const traffic::TrafficSnapshot snapshot = fromMsg(message);
-    std::optional<cbv::CbvSelection> selection;
-    if (selection_) selection = fromMsg(*selection_, setup_->network());
-    markers_output_.publish(markers_.build(snapshot, selection ? &*selection : nullptr));
+    last_ = fromMsg(message);
+    markers_->note(last_);
+    if (message.decision_tick || final) show();
   } catch (const core::InputError& error) {
     ROS_ERROR_THROTTLE(1.0, "a tick cannot be shown: %s", error.what());
   }
+}
+
+void SceneNode::show() {
+  std::optional<cbv::CbvSelection> selection;
+  if (selection_) selection = fromMsg(*selection_, setup_->network());
+  std::vector<planning::PlannedAction> plans;
+  for (const auto& [slot, plan] : plans_) plans.push_back(plan);
+  session::TickRecord record;
+  record.snapshot = &last_;
+  record.selection = selection ? &*selection : nullptr;
+  record.actions = &plans;
+  markers_output_.publish(markers_->build(record));
+  if (view_output_.getNumSubscribers() == 0) return;
+  view_output_.publish(front_view_->draw(last_, &plans));
 }
 
 void SceneNode::takeRollout(const msgs::Rollout& message) {
@@ -88,7 +106,9 @@ void SceneNode::takeRollout(const msgs::Rollout& message) {
   action.slot = message.slot;
   action.vehicle_id = message.vehicle_id;
   action.rollout = fromMsg(message);
-  rollouts_output_.publish(rolloutMarkers({action}, message.header.stamp.toSec()));
+  action.candidates = candidatesFromMsg(message);
+  rollouts_output_.publish(planMarkers({action}, last_));
+  plans_[message.slot] = action;
 }
 
 }  // namespace cdiff::node_graph

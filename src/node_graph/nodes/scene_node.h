@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "node_graph/lockstep/node_process.h"
+#include "node_graph/messages/front_view.h"
 #include "node_graph/messages/markers.h"
 #include "ros/ros.h"
 #include "session/session_setup.h"
@@ -29,6 +31,7 @@ class SceneNode {
   void takeSelection(const ::e2e_cdiff::CbvSelection::ConstPtr& selection);
   void takeTraffic(const ::e2e_cdiff::TrafficSnapshot& snapshot);
   void takeRollout(const ::e2e_cdiff::Rollout& message);
+  void show();
   void listenToRollouts();
 
   StopSignal& stop_;
@@ -36,9 +39,13 @@ class SceneNode {
   ros::Publisher markers_output_;
   ros::Publisher map_output_;
   ros::Publisher rollouts_output_;
+  ros::Publisher view_output_;
   std::vector<ros::Subscriber> rollouts_;  ///< of the session's slots
   std::unique_ptr<session::SessionSetup> setup_;
-  SessionMarkers markers_;
+  std::unique_ptr<SessionMarkers> markers_;
+  std::unique_ptr<FrontView> front_view_;
+  traffic::TrafficSnapshot last_;                  ///< the last snapshot
+  std::map<int, planning::PlannedAction> plans_;   ///< the last one of each slot
   ::e2e_cdiff::CbvSelection::ConstPtr selection_;  ///< the last one
 };
 
