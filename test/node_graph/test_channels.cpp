@@ -80,6 +80,20 @@ TEST(Channels, LayoutsOfPlottingToolsNameOurTopics) {
   }
 }
 
+TEST(Channels, ViewsOfRvizNameOurTopics) {
+  for (const char* view : {"session", "replay", "debug", "steering"}) {
+    const std::string file = std::string(view) + ".rviz";
+    const std::string text = core::readFile(core::shareFolder() / "rviz" / file, "view");
+    const std::regex topic("Topic: (/[^\\s]+)");
+    const std::sregex_iterator begin(text.begin(), text.end(), topic);
+    EXPECT_GE(std::distance(begin, {}), 5) << file;
+    for (auto named = begin; named != std::sregex_iterator(); ++named) {
+      const std::string name = (*named)[1];
+      EXPECT_TRUE(isOfATopic(name) || name == "/clicked_point") << file << ": " << name;
+    }
+  }
+}
+
 /// Everybody takes part.
 SessionGraph graphWith(bool cbvs_see, bool cbvs_guided) {
   SessionGraph graph{{kCbvPlannerNode, kCameraNode, kMetricsNode, kRecorderNode}, 2};
