@@ -131,6 +131,20 @@ class Scripts(unittest.TestCase):
             self.assertNotIn("test/", inputs)
         self.assertNotIn("libe2e_cdiff_learning", inputs)
 
+    def test_pictures_of_rviz_name_the_packages_they_lack(self):
+        done = subprocess.run([SOURCE / "scripts/draw_rviz", "session"], env={**os.environ, "PATH": "/nowhere"}, timeout=60, capture_output=True, text=True,
+                              check=False)
+        self.assertEqual(done.returncode, 2)
+        listed = (SOURCE / "scripts/packages_rviz.txt").read_text(encoding="utf-8").split()
+        for package in ("rviz", "xvfb", "imagemagick", "xdotool"):
+            self.assertIn(package, done.stderr)
+            self.assertIn(package, listed)
+
+    def test_pictures_are_of_views_that_exist(self):
+        done = subprocess.run([SOURCE / "scripts/draw_rviz", "--help"], timeout=60, capture_output=True, text=True, check=False)
+        views = re.search(r"^  VIEW +(.*)$", done.stdout, re.MULTILINE).group(1).split(", ")
+        self.assertEqual(sorted(views), sorted(path.stem for path in (SOURCE / "rviz").glob("*.rviz")))
+
     def test_setup_refuses_what_it_does_not_know(self):
         self.assertEqual(calls_of("setup", "--no-test"), [])
         self.assertEqual(calls_of("setup", "--only"), [])
