@@ -101,7 +101,7 @@ TEST(OutsideTexts, TheReportShowsThem) {
   const std::string page = NamedResult(outsideText()).textOf("report.html");
   const std::string harmless = NamedResult("").textOf("report.html");
   expectSameElements(page, harmless);
-  EXPECT_EQ(countOf(page, "<script"), 2u);  // the data and the program
+  EXPECT_EQ(countOf(page, "<script"), 3u);  // the data, the player and the program
   for (const char* place :
        {"<h1>scenario ", "<td>bg_1", "<h3>bg_1", "<title>bg_1", "</svg>CBV bg_1", "<td>source ",
         "<td>fault ", "<td>speed", "<figcaption>speed", "<td>ego:", "<td>cbv:", "<td>change ",
@@ -116,7 +116,7 @@ TEST(OutsideTexts, AMetricOfAPlugInIsShown) {
   EXPECT_TRUE(has(page, "<summary>label " + std::string(test::escapedText())));
   // One row of five cells more, with a definition that unfolds.
   EXPECT_EQ(tagsOf(page).size(), tagsOf(harmless).size() + 12 + 6);
-  EXPECT_EQ(countOf(page, "<script"), 2u);
+  EXPECT_EQ(countOf(page, "<script"), 3u);
   EXPECT_TRUE(test::isPlain(page));
 }
 
