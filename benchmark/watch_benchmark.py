@@ -48,7 +48,7 @@ def main():
     parser.add_argument("--cbv-planner", default="pdm_lite", help="planner of the CBVs; a fast one has the highest share")
     options = parser.parse_args()
     cdiff = Path(os.environ.get("BUILD", "build")) / "devel/lib/e2e_cdiff/cdiff"
-    arguments = ["crossing_left_turn", "--seed", "3", "--mode", "safety_critical", "--cbv-planner", options.cbv_planner]
+    arguments = ["crossing_left_turn", "--seed", "3", "--cbv-planner", options.cbv_planner]
     kinds = {"no_page": (True, False), "page": (True, True)}
     shares = {(kind, time_of): [] for kind in kinds for time_of in ("wall", "processor")}
     with tempfile.TemporaryDirectory() as scratch:
