@@ -36,7 +36,9 @@ int main(int argc, char** argv) {
   note("paused", [&] { return client.figures().state == State::kPaused; });
   const std::uint64_t tick = client.figures().tick;
   client.step(4);
-  note("stepped", [&] { return client.figures().tick == tick + 4; });
+  note("stepped", [&] {
+    return client.figures().tick == tick + 4 && client.figures().answer == "step: done";
+  });
   client.steer("profile", "nonsense");
   note("refused", [&] { return client.figures().refused; });
   client.steer("profile", "safety_critical");
