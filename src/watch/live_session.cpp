@@ -69,17 +69,16 @@ void LiveSession::begin(const page::ResultWriter& writer, double patience) {
   writer_ = &writer;
   auto done = std::make_shared<std::promise<bool>>();
   std::future<bool> paused = done->get_future();
+  link_->send({}, [done](const std::string& refused) { done->set_value(refused.empty()); });
+  const bool answered =
+      paused.wait_for(std::chrono::duration<double>(kAnswerPatience)) == std::future_status::ready;
+  if (!answered || !paused.get()) return;  // it cannot be held, where the wall clock rules
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     held_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(patience));
   }
-  link_->send({}, [done](const std::string& refused) { done->set_value(refused.empty()); });
-  const bool answered =
-      paused.wait_for(std::chrono::duration<double>(kAnswerPatience)) == std::future_status::ready;
-  if (answered && paused.get()) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  held_until_.reset();  // it cannot be held, where the wall clock rules
+  if (viewers_ > 0) start();  // a page that came before
 }
 
 void LiveSession::observe(const session::TickRecord& record) {
@@ -244,7 +243,7 @@ void LiveSession::start() {
     held_until_.reset();
   }
   const auto ignore = [](const std::string&) {};
-  if (viewers_ > 0 && setup_.options().at_most <= 0.0) {
+  if (viewers_ > 0 && !pace_asked_ && setup_.options().at_most <= 0.0) {
     PageCommand real_time;
     real_time.kind = PageCommand::Kind::kPace;
     real_time.pace = 1.0;
@@ -271,7 +270,9 @@ void LiveSession::take(const std::string& message,
     answer(dumped({{"answers", Json::array({one})}}));
   };
   try {
-    link_->send(commandFrom(message), reply);
+    const PageCommand command = commandFrom(message);
+    if (command.kind == PageCommand::Kind::kPace) pace_asked_ = true;
+    link_->send(command, reply);
   } catch (const core::InputError& error) {
     reply(error.what());
   }

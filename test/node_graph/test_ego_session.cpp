@@ -294,7 +294,7 @@ TEST_F(EgoSession, RosbagPlayShowsTheSceneInRviz) {
     return core::readFile(session_.folder() / name, "output");
   };
   EXPECT_NE(shown("markers").find("ns: \"vehicles\""), std::string::npos) << session_.log();
-  EXPECT_NE(shown("markers_map").find("ns: \"lanes\""), std::string::npos) << session_.log();
+  EXPECT_NE(shown("markers_map").find("ns: \"surfaces\""), std::string::npos) << session_.log();
   EXPECT_NE(shown("markers_rollouts").find("ns: \"rollouts\""), std::string::npos);
   EXPECT_NE(shown("tf").find("ego/base_link"), std::string::npos);
   EXPECT_NE(shown("ego_odometry").find("covariance: [1e-06"), std::string::npos);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "core/file.h"
 #include "session/closed_loop.h"
@@ -27,14 +28,19 @@ constexpr const char* kOddName = "<script>alert(1)</script>";
 /// A session on a straight road whose traffic has an odd name, in a thread.
 class WatchedRun {
  public:
-  /// `patience`: how long it waits for a page [s]; negative: it is not watched.
-  explicit WatchedRun(double patience) : loop_(scripted_.setup(), parts()) {
+  using Early = std::function<void(const PageAddress&)>;
+
+  /// `patience`: how long it waits for a page [s]; negative: it is not watched. `early` is called
+  /// when the page is there and the session has not begun.
+  explicit WatchedRun(double patience, const Early& early = {})
+      : loop_(scripted_.setup(), parts()) {
     if (patience >= 0.0)
       live_ = std::make_unique<LiveSession>(scripted_.setup(),
                                             std::make_unique<ControlLink>(loop_.control()), 0);
     loop_.addObserver(writer_);
     if (live_) {
       loop_.addObserver(*live_);
+      if (early) early(address());
       live_->begin(writer_, patience);
     }
     thread_ = std::thread([this] { loop_.run(stop_); });
@@ -53,6 +59,7 @@ class WatchedRun {
     return writer_.result().trace_sha256;
   }
   void stop() { stop_ = true; }
+  double pace() { return loop_.control().pace(); }
   const record::SessionResult& result() const { return writer_.result(); }
   /// Files of the result that hold a text.
   std::vector<std::string> filesWith(const std::string& text) const {
@@ -123,6 +130,17 @@ TEST(LiveSession, ComputesTheSameBytesWhateverItsPagesDo) {
   reader.join();
   EXPECT_TRUE(run.result().steering.records().empty());
   EXPECT_EQ(run.filesWith(run.address().token), std::vector<std::string>());
+}
+
+TEST(LiveSession, APageThatComesEarlyStartsItAtThePaceThatItAsksFor) {
+  std::unique_ptr<PageSocket> page;
+  WatchedRun run(600.0, [&](const PageAddress& address) {
+    page = std::make_unique<PageSocket>(address);
+    EXPECT_EQ(page->ask({{"do", "pace"}, {"value", "0"}}), "");
+  });
+  EXPECT_EQ(run.pace(), 0.0);
+  page.reset();
+  EXPECT_FALSE(run.end().empty());
 }
 
 TEST(LiveSession, ShowsItsPagesTheSame) {
