@@ -17,7 +17,8 @@ TEST_F(Session, ThePanelsClientPausesStepsAndSteersIt) {
   EXPECT_EQ(core::readFile(found, "what was found"),
             "CBV yes\npaused yes\nstepped yes\nrefused yes\nprofile yes\nweight yes\nover yes\n");
   std::vector<std::string> changes;
-  for (const nlohmann::json& change : summary()["steering"]["changes"]) {
+  const nlohmann::json ended = summary();
+  for (const nlohmann::json& change : ended["steering"]["changes"]) {
     EXPECT_EQ(change["by"], "node /panel_hand");
     changes.push_back(change["what"].get<std::string>() + " " + change["after"].get<std::string>());
   }

@@ -137,7 +137,7 @@ std::optional<geometry_msgs::TransformStamped> slotTransform(
   if (cbv == nullptr) cbv = snapshot.ego();
   if (cbv == nullptr) return std::nullopt;
   auto transform = transformOf(*cbv, snapshot.time);
-  transform.child_frame_id = "cbv_" + std::to_string(slot) + "/base_link";
+  transform.child_frame_id = frameId("cbv_" + std::to_string(slot) + "/base_link");
   return transform;
 }
 
