@@ -78,7 +78,7 @@ void LiveSession::begin(const page::ResultWriter& writer, double patience) {
     held_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(patience));
   }
-  if (viewers_ > 0) start();  // a page that came before
+  if (seen_) start();  // by a page that came before
 }
 
 void LiveSession::observe(const session::TickRecord& record) {
@@ -232,7 +232,9 @@ void LiveSession::delivered(const std::string& name) {
 
 void LiveSession::viewersAre(std::size_t count) {
   viewers_ = count;
-  if (count > 0) start();
+  if (count == 0) return;
+  seen_ = true;
+  start();
 }
 
 /// The first page starts a session that was held for it.
@@ -243,7 +245,7 @@ void LiveSession::start() {
     held_until_.reset();
   }
   const auto ignore = [](const std::string&) {};
-  if (viewers_ > 0 && !pace_asked_ && setup_.options().at_most <= 0.0) {
+  if (seen_ && !pace_asked_ && setup_.options().at_most <= 0.0) {
     PageCommand real_time;
     real_time.kind = PageCommand::Kind::kPace;
     real_time.pace = 1.0;

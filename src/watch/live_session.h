@@ -78,6 +78,7 @@ class LiveSession : public session::SessionObserver, private WatchSource {
   std::unique_ptr<SessionLink> link_;
   std::shared_ptr<const std::string> page_;
   std::atomic<std::size_t> viewers_{0};
+  std::atomic<bool> seen_{false};        ///< a page was open
   std::atomic<bool> pace_asked_{false};  ///< by a page
 
   // Of the session's thread.

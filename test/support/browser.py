@@ -3,6 +3,7 @@ import base64
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -32,7 +33,7 @@ class Browser:
         self.process = subprocess.Popen(
             [program(), "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={self.folder.name}",
              f"--window-size={width},{height}", "--remote-debugging-pipe", "about:blank"],
-            preexec_fn=connect, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: PLW1509
+            preexec_fn=connect, close_fds=False, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: PLW1509
         os.close(to_browser)
         os.close(from_browser)
         self.number, self.rest, self.session = 0, b"", None
@@ -46,11 +47,20 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.process.kill()
-        self.process.wait()
+        self.end_processes()
         os.close(self.to)
         os.close(self.come)
         self.folder.cleanup()
+
+    def end_processes(self):
+        """Ends the browser and its helpers, which still write into the folder when it is gone."""
+        try:
+            while True:
+                os.killpg(self.process.pid, signal.SIGKILL)
+                self.process.wait()
+                time.sleep(0.05)
+        except ProcessLookupError:
+            pass
 
     def message(self):
         while b"\0" not in self.rest:

@@ -184,7 +184,9 @@ TEST_F(WatchServerTest, AMessageOf100MegabytesEndsItsPageAlone) {
   EXPECT_TRUE(comes([&] { return source_.viewers == 2; }));
   EXPECT_THROW(
       {
-        flood.send(std::string(100000000, 'x'));
+        std::string message;
+        message.resize(100000000, 'x');
+        flood.send(message);
         while (true) flood.next();
       },
       boost::system::system_error);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/lockstep/tick_record.h"
 
+#include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/topics.h"
 #include "node_graph/messages/traffic_conversions.h"
 

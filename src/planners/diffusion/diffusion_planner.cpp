@@ -3,6 +3,7 @@
 #include "planners/diffusion/diffusion_planner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "e2e_cdiff/core/angle.h"
@@ -185,12 +186,11 @@ void DiffusionPlanner::solvePart(std::uint64_t tick, Worker& worker,
 
 namespace {
 
-/// The plans that were weighed, in the map frame; nothing where there
-/// was no choice.
+/// The plans that were weighed, in the map frame; nothing where there was no choice.
 std::vector<planning::PlannedCandidate> plannedCandidates(const geometry::Pose2d& pose,
                                                           const ChosenPlan& chosen) {
-  constexpr auto kStride =
-      static_cast<Eigen::Index>(planning::kCandidateStep / traffic::kRolloutStep + 0.5);
+  const auto stride =
+      static_cast<Eigen::Index>(std::lround(planning::kCandidateStep / traffic::kRolloutStep));
   const auto& plans = chosen.weighed.plans;
   const auto& scores = chosen.weighed.scores;
   std::vector<planning::PlannedCandidate> candidates;
@@ -199,7 +199,7 @@ std::vector<planning::PlannedCandidate> plannedCandidates(const geometry::Pose2d
     planning::PlannedCandidate& candidate = candidates.emplace_back();
     candidate.score = -scores[i].value;
     candidate.chosen = static_cast<std::int64_t>(i) == chosen.report.chosen;
-    for (Eigen::Index row = kStride - 1; row < plans[i].rows(); row += kStride)
+    for (Eigen::Index row = stride - 1; row < plans[i].rows(); row += stride)
       candidate.places.push_back(pose.toMap(plans[i].row(row).head<2>().transpose()));
   }
   return candidates;
