@@ -31,6 +31,7 @@ struct WhatIfArguments {
   std::optional<double> at;
   double before = 3.0;
   bool all = false;
+  bool without_latest = false;
   what_if::DriverChoice driver;
 };
 
@@ -63,7 +64,8 @@ std::vector<Answer> answersOf(const fs::path& folder, const WhatIfArguments& arg
   if (questions.empty()) return answers;
   const session::SessionSetup setup(run.scenario());
   const what_if::Driver driver(setup, arguments.driver);
-  for (const what_if::Question& question : questions) {
+  for (what_if::Question& question : questions) {
+    question.latest = !arguments.without_latest;
     answers.push_back(what_if::answer(run, setup, driver, question, stop));
     const fs::path page = what_if::writeAnswer(run, setup, answers.back());
     std::cout << what_if::answerText(answers.back()) << "\n  " << page.string() << "\n"
@@ -147,6 +149,8 @@ void addWhatIfCommand(CLI::App& program, int& exit_code) {
       ->capture_default_str()
       ->check(CLI::Range(0.1, what_if::kEarliest))
       ->excludes(at);
+  command->add_flag("--without-latest", arguments->without_latest,
+                    "Leave out the search for the latest take-over, which takes most of the time");
   command->add_option("--ego", arguments->driver.planner, "Planner that takes the ego over")
       ->capture_default_str();
   command

@@ -93,7 +93,7 @@ class Inquiry {
                   {}};
     for (const double shift : kShifts)
       answer.shifted.emplace_back(shift, !open(asked, shift).contact.has_value());
-    if (!question_.contact) return answer;
+    if (!question_.contact || !question_.latest) return answer;
     answer.earliest = earliestSteps() * period();
     answer.open.latest = latest(answer.open, [&](const TakeOver& at) { return open(at, 0.0); });
     answer.closed.latest = latest(answer.closed, [&](const TakeOver& at) { return closed(at); });
@@ -172,14 +172,16 @@ std::string avoidableText(const Answer& answer) {
 /// not, where one at another time does.
 std::string latestText(const Answer& answer) {
   const LoopAnswer& loop = answer.closed;
+  const std::string asked = core::formatNumber(answer.question.before) + " s before";
+  if (!answer.earliest)
+    return "taking over " + asked + (loop.avoids() ? " avoids it" : " does not avoid it");
   if (!loop.latest)
     return "does not avoid it, not even taking over " + core::formatFixed(*answer.earliest, 1) +
            " s before";
   const std::string text =
       "taking over " + core::formatFixed(*loop.latest, 1) + " s before the contact avoids it";
   return loop.avoids() ? text
-                       : text + ", taking over " + core::formatNumber(answer.question.before) +
-                             " s before does not";
+                       : text + ", taking over " + asked + " does not";
 }
 
 /// "clear for 8 s", "contact with a at 3.20 s".
@@ -204,11 +206,13 @@ std::string answerText(const Answer& answer) {
            " s: " + courseText(answer.closed.course) +
            "; others as recorded: " + courseText(answer.open.course);
   }
+  const std::string open = answer.open.latest
+                               ? core::formatFixed(*answer.open.latest, 1) + " s before"
+                           : answer.open.avoids() ? "it avoids it"
+                                                  : "it does not";
   return "contact " + std::to_string(contact->number) + " (" + contact->partner + ", " +
          core::formatFixed(contact->seconds, 2) + " s): " + avoidableText(answer) + answer.driver +
-         " " + latestText(answer) + "; others as recorded: " +
-         (answer.open.latest ? core::formatFixed(*answer.open.latest, 1) + " s before"
-                             : "it does not");
+         " " + latestText(answer) + "; others as recorded: " + open;
 }
 
 const std::vector<std::string>& answerHead() {
@@ -275,7 +279,7 @@ Json answerJson(const RecordedRun& run, const Answer& answer) {
                        {"with", contact->partner},
                        {"ego_side", contact->ego_side}};
     json["before_s"] = answer.question.before;
-    json["earliest_take_over_s"] = *answer.earliest;
+    if (answer.earliest) json["earliest_take_over_s"] = *answer.earliest;
   }
   json["closed"] = loopJson(answer.closed, answer.earliest);
   json["open"] = loopJson(answer.open, answer.earliest);

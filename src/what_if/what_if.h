@@ -25,6 +25,7 @@ struct Question {
   std::optional<RecordedContact> contact;  ///< that is to be avoided; nullopt: `seconds` counts
   double seconds = 0.0;                    ///< time of the take-over, where no contact is named
   double before = 3.0;                     ///< time of the take-over before the contact [s]
+  bool latest = true;                      ///< whether the latest take-over is searched for
 };
 
 /// What a driver comes to with everyone else as recorded (open) or answering to it (closed).

@@ -104,6 +104,22 @@ TEST_F(WhatIf, TheLatestTakeOverAvoidsAndOneStepLaterDoesNot) {
   EXPECT_EQ(answer("contact_1_pdm_lite")["closed"]["latest_take_over_s"], latest);
 }
 
+TEST_F(WhatIf, WithoutTheLatestTakeOverTheOtherAnswersAreTheSame) {
+  ASSERT_EQ(ask({"--contact", "1", "--ego", "pdm_lite"}), 0) << output();
+  nlohmann::json searched = answer("contact_1_pdm_lite");
+  ASSERT_EQ(ask({"--contact", "1", "--ego", "pdm_lite", "--without-latest"}), 0) << output();
+  nlohmann::json asked = answer("contact_1_pdm_lite");
+  EXPECT_TRUE(searched["closed"]["avoids"].get<bool>());
+  EXPECT_FALSE(asked.contains("earliest_take_over_s"));
+  searched.erase("earliest_take_over_s");
+  for (nlohmann::json* found : {&searched, &asked}) found->erase("text");
+  for (const std::string loop : {"closed", "open"}) {
+    EXPECT_FALSE(asked[loop].contains("latest_take_over_s"));
+    searched[loop].erase("latest_take_over_s");
+  }
+  EXPECT_EQ(asked, searched);
+}
+
 TEST_F(WhatIf, TheReportHasARowForEachAnswerAndKeepsTheOthers) {
   const std::string report = text("report.html");
   for (int i = 0; i < 2; ++i) {

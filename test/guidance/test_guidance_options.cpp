@@ -188,6 +188,8 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
       {"paper_ablation_collision", {"collision_avoidance"}},
       {"paper_ablation_drivable", {"drivable_area"}},
       {"paper_ablation_speed", {"speed"}},
+      {"paper_literal_naturalistic", {"speed", "drivable_area", "collision_avoidance"}},
+      {"paper_literal_safety_critical", {"speed", "drivable_area", "collision_seeking"}},
       {"paper_naturalistic", {"speed", "drivable_area", "collision_avoidance"}},
       {"paper_safety_critical", {"speed", "drivable_area", "collision_seeking"}},
       {"safety_critical", {"speed", "drivable_area", "collision_seeking", "traffic_avoidance"}}};
@@ -234,18 +236,21 @@ TEST(Profiles, NoiseCorrelationAndCandidatesAreCopiedAndInRange) {
   }
 }
 
-TEST(Profiles, ThePapersSeekAndAvoidByOneSetOfValues) {
-  GuidanceOptions nat = loadProfile("paper_naturalistic");
-  GuidanceOptions critical = loadProfile("paper_safety_critical");
-  const WeightedObjective& avoids = nat.find("collision_avoidance");
-  const WeightedObjective& seeks = critical.find("collision_seeking");
-  EXPECT_EQ(avoids.weight, seeks.weight);
-  const auto& safe = dynamic_cast<const CollisionAvoidanceObjective&>(*avoids.objective).proximity;
-  const auto& risk = dynamic_cast<const CollisionSeekingObjective&>(*seeks.objective).proximity;
-  EXPECT_EQ(std::tie(safe.buffer, safe.kappa, safe.lambda, safe.sigma),
-            std::tie(risk.buffer, risk.kappa, risk.lambda, risk.sigma));
-  for (const std::string name : {"speed", "drivable_area"})
-    EXPECT_EQ(nat.find(name).weight, critical.find(name).weight) << name;
+TEST(Profiles, ThePapersSeekAndAvoidByOneShape) {
+  for (const std::string method : {"paper", "paper_literal"}) {
+    GuidanceOptions nat = loadProfile(method + "_naturalistic");
+    GuidanceOptions critical = loadProfile(method + "_safety_critical");
+    const WeightedObjective& avoids = nat.find("collision_avoidance");
+    const WeightedObjective& seeks = critical.find("collision_seeking");
+    EXPECT_EQ(seeks.weight, method == "paper" ? 3.0 * avoids.weight : avoids.weight);
+    const auto& safe =
+        dynamic_cast<const CollisionAvoidanceObjective&>(*avoids.objective).proximity;
+    const auto& risk = dynamic_cast<const CollisionSeekingObjective&>(*seeks.objective).proximity;
+    EXPECT_EQ(std::tie(safe.buffer, safe.kappa, safe.lambda, safe.sigma),
+              std::tie(risk.buffer, risk.kappa, risk.lambda, risk.sigma));
+    for (const std::string name : {"speed", "drivable_area"})
+      EXPECT_EQ(nat.find(name).weight, critical.find(name).weight) << name;
+  }
 }
 
 /// All values of an objective as YAML.

@@ -135,6 +135,26 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
   EXPECT_EQ(images.guided, decisions);
 }
 
+TEST_F(Session, ChallengingHasTheResultOfTheClosedLoop) {
+  const fs::path alone = folder_ / "one_process";
+  const std::string settings = "protocol.time_limit=8 verdict.judge=false";
+  const std::string log = launch("e2e_cdiff session.launch",
+                                 "scenario:=crossing_left_turn seed:=2 mode:=challenging "
+                                 "cbv_planner:=diffusion set:=\"" +
+                                     settings + "\"");
+  EXPECT_EQ(exitCode(), "0\n") << log;
+  session::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.mode = "challenging";
+  request.cbv_planner = "diffusion";
+  request.set = core::splitText(settings, ' ');
+  test::runInOneProcess(request, alone);
+  EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
+  EXPECT_GT(summary()["challenge"]["decisions"], 0);
+  EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
+}
+
 TEST_F(Session, PlannersBySlotHaveTheResultOfTheClosedLoop) {
   const fs::path alone = folder_ / "one_process";
   const std::string settings = "protocol.time_limit=10 verdict.judge=false diffusion.model=" +

@@ -177,6 +177,7 @@ TEST(SessionRequest, MethodPaperIsThePapersSamplingAndGuidance) {
   const auto& diffusion = paper.planner_options.of<planners::DiffusionOptions>();
   EXPECT_EQ(diffusion.sampler.mode, "paper");
   EXPECT_EQ(diffusion.conditioning, "image");
+  EXPECT_EQ(diffusion.current_state, "pinned");
   EXPECT_EQ(paper.guidance.candidates, 1);
   EXPECT_TRUE(paper.guidance.isActive("collision_avoidance"));
   for (const guidance::GuidanceOptions* guidance : {&paper.guidance, &paper.ego_guidance}) {
@@ -221,7 +222,7 @@ TEST(SessionRequest, TheDefaultMethodIsWhatASessionWithoutOneDoes) {
   const std::string without = core::dumpOptions(resolveRequest(request));
   request.set = {"method=default"};
   EXPECT_EQ(core::dumpOptions(resolveRequest(request)), without);
-  EXPECT_EQ(shippedMethods(), (std::vector<std::string>{"default", "paper"}));
+  EXPECT_EQ(shippedMethods(), (std::vector<std::string>{"default", "paper", "paper_literal"}));
 }
 
 TEST(SessionRequest, SaysWhichMethodItsPlannersFollowAndWhatWasChanged) {
