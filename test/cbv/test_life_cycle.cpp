@@ -132,7 +132,7 @@ TEST(LifeCycle, RiftNeverRanksAgain) {
   EXPECT_EQ(reasonOf(later, "weak"), "");
 }
 
-// As above, but for the mode that steering sets; a life cycle that the scenario names stays.
+// `by_mode` follows a mode that steering sets. A life cycle that the scenario names stays.
 TEST(LifeCycle, FollowsTheModeThatSteeringSets) {
   for (const char* life_cycle : {"by_mode", "rift"}) {
     CbvOptions options;

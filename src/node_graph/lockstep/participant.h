@@ -89,7 +89,7 @@ class Participant {
   void listen(const Topic& topic, const TakeMessage& take);
   /// Acknowledges a tick to the traffic simulator: this node has processed it.
   void acknowledge(std::uint64_t tick) { publishAck(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
-  /// Tells the traffic simulator of a fault, which the session survives and records.
+  /// Reports a fault to the traffic simulator, which records it; the session goes on.
   void reportFault(const std::string& text) {
     publishAck(::e2e_cdiff::TickAck::FAULT, lastTick(), text);
   }
