@@ -180,8 +180,7 @@ std::string latestText(const Answer& answer) {
            " s before";
   const std::string text =
       "taking over " + core::formatFixed(*loop.latest, 1) + " s before the contact avoids it";
-  return loop.avoids() ? text
-                       : text + ", taking over " + asked + " does not";
+  return loop.avoids() ? text : text + ", taking over " + asked + " does not";
 }
 
 /// "clear for 8 s", "contact with a at 3.20 s".
