@@ -106,28 +106,37 @@ TEST_F(Session, CamerasShowOccupiedSlotsAtDecisionsAndChangeNothing) {
   EXPECT_EQ(images.shown, images.occupied);
 }
 
-TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag) {
-  const fs::path alone = folder_ / "one_process";
-  const std::string model = testing::writeRandomModel(folder_ / "model");
-  const std::string settings = "protocol.time_limit=8 verdict.judge=false diffusion.model=" + model;
-  const std::string log = launch("e2e_cdiff session.launch",
-                                 "scenario:=crossing_left_turn seed:=2 record:=true "
-                                 "cbv_planner:=diffusion set:=\"" +
-                                     settings + "\"");
-  EXPECT_EQ(exitCode(), "0\n") << log;
-  session::SessionRequest request;
-  request.scenario = "crossing_left_turn";
-  request.seed = "2";
-  request.cbv_planner = "diffusion";
-  request.set = core::splitText(settings, ' ');
-  test::runInOneProcess(request, alone);
-  EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
+/// crossing_left_turn with CBVs of the diffusion planner for 8 s.
+class DiffusionSession : public Session {
+ protected:
+  /// The session as nodes, with a bag, and in one process; expects equal results and no fault.
+  void runBoth(const std::string& mode, const std::string& more_settings = "") {
+    const std::string settings = "protocol.time_limit=8 verdict.judge=false" + more_settings;
+    const std::string log =
+        launch("e2e_cdiff session.launch",
+               "scenario:=crossing_left_turn seed:=2 record:=true mode:=" + mode +
+                   " cbv_planner:=diffusion set:=\"" + settings + "\"");
+    EXPECT_EQ(exitCode(), "0\n") << log;
+    session::SessionRequest request;
+    request.scenario = "crossing_left_turn";
+    request.seed = "2";
+    request.mode = mode;
+    request.cbv_planner = "diffusion";
+    request.set = core::splitText(settings, ' ');
+    test::runInOneProcess(request, alone());
+    EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone())));
+    EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
+  }
+  fs::path alone() const { return folder_ / "one_process"; }
+};
+
+TEST_F(DiffusionSession, HasTheResultOfTheClosedLoopAndItsImagesInTheBag) {
+  runBoth("naturalistic", " diffusion.model=" + testing::writeRandomModel(folder_ / "model"));
   EXPECT_FALSE(summary()["cbv"]["plan"].is_null());
   EXPECT_FALSE(picturesIn(results()).empty());
-  EXPECT_EQ(picturesIn(results()), picturesIn(alone));
-  EXPECT_EQ(countsIn(results() / "session.bag"), countsIn(alone / "session.bag"));
-  EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0) << log;
-  EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
+  EXPECT_EQ(picturesIn(results()), picturesIn(alone()));
+  EXPECT_EQ(countsIn(results() / "session.bag"), countsIn(alone() / "session.bag"));
+  EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0);
   const BagImages images = imagesIn(results() / "session.bag");
   EXPECT_EQ(images.shown, images.occupied);
   std::set<ros::Time> decisions;
@@ -135,24 +144,9 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
   EXPECT_EQ(images.guided, decisions);
 }
 
-TEST_F(Session, ChallengingHasTheResultOfTheClosedLoop) {
-  const fs::path alone = folder_ / "one_process";
-  const std::string settings = "protocol.time_limit=8 verdict.judge=false";
-  const std::string log = launch("e2e_cdiff session.launch",
-                                 "scenario:=crossing_left_turn seed:=2 mode:=challenging "
-                                 "cbv_planner:=diffusion set:=\"" +
-                                     settings + "\"");
-  EXPECT_EQ(exitCode(), "0\n") << log;
-  session::SessionRequest request;
-  request.scenario = "crossing_left_turn";
-  request.seed = "2";
-  request.mode = "challenging";
-  request.cbv_planner = "diffusion";
-  request.set = core::splitText(settings, ' ');
-  test::runInOneProcess(request, alone);
-  EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
+TEST_F(DiffusionSession, ChallengingHasTheResultOfTheClosedLoop) {
+  runBoth("challenging");
   EXPECT_GT(summary()["challenge"]["decisions"], 0);
-  EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
 }
 
 TEST_F(Session, PlannersBySlotHaveTheResultOfTheClosedLoop) {
