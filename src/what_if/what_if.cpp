@@ -183,6 +183,12 @@ std::string latestText(const Answer& answer) {
   return loop.avoids() ? text : text + ", taking over " + asked + " does not";
 }
 
+/// "1.4 s before", or whether the take-over that was asked for avoids it.
+std::string openText(const LoopAnswer& open) {
+  if (open.latest) return core::formatFixed(*open.latest, 1) + " s before";
+  return open.avoids() ? "it avoids it" : "it does not";
+}
+
 /// "clear for 8 s", "contact with a at 3.20 s".
 std::string courseText(const Course& course) {
   if (!course.contact) return "no contact";
@@ -205,13 +211,9 @@ std::string answerText(const Answer& answer) {
            " s: " + courseText(answer.closed.course) +
            "; others as recorded: " + courseText(answer.open.course);
   }
-  const std::string open = answer.open.latest
-                               ? core::formatFixed(*answer.open.latest, 1) + " s before"
-                           : answer.open.avoids() ? "it avoids it"
-                                                  : "it does not";
   return "contact " + std::to_string(contact->number) + " (" + contact->partner + ", " +
          core::formatFixed(contact->seconds, 2) + " s): " + avoidableText(answer) + answer.driver +
-         " " + latestText(answer) + "; others as recorded: " + open;
+         " " + latestText(answer) + "; others as recorded: " + openText(answer.open);
 }
 
 const std::vector<std::string>& answerHead() {

@@ -30,8 +30,10 @@ struct Question {
 
 /// What a driver comes to with everyone else as recorded (open) or answering to it (closed).
 struct LoopAnswer {
-  Course course;                 ///< with the take-over that the question names
-  std::optional<double> latest;  ///< latest take-over that avoids, before the contact [s]
+  Course course;  ///< with the take-over that the question names
+  /// Latest take-over that avoids, before the contact [s]; nullopt also where none was searched
+  /// for.
+  std::optional<double> latest;
 
   bool avoids() const { return !course.contact.has_value(); }
 };
@@ -39,9 +41,10 @@ struct LoopAnswer {
 /// The answer to a question.
 struct Answer {
   Question question;
-  std::string driver;              ///< label of the driver
-  double take_over = 0.0;          ///< time of the take-over [s]
-  std::optional<double> earliest;  ///< earliest take-over that was tried, before the contact [s]
+  std::string driver;      ///< label of the driver
+  double take_over = 0.0;  ///< time of the take-over [s]
+  /// Earliest take-over that was tried, before the contact [s]; nullopt: none was searched for.
+  std::optional<double> earliest;
   Course recorded;
   LoopAnswer open;
   LoopAnswer closed;
