@@ -19,10 +19,10 @@ BUDGETS = {"README.md": 950, "CONTRIBUTING.md": 1300, "docs/README.md": 350,
            "docs/first_session.md": 700, "docs/test_your_ego.md": 700, "docs/your_own_scenario.md": 900, "docs/your_own_objective.md": 500,
            # how-to
            "docs/evaluation.md": 700, "docs/training.md": 1000, "docs/plugins.md": 450, "docs/replay.md": 450, "docs/steering.md": 450, "docs/watch.md": 300, "docs/rviz.md": 450, "docs/what_if.md": 450, "docs/suites.md": 500,
-           "docs/sealed_suites.md": 700, "docs/sealed_suites_log.md": 600, "docs/troubleshooting.md": 700,
+           "docs/sealed_suites.md": 700, "docs/sealed_suites_log.md": 650, "docs/troubleshooting.md": 700,
            # explanation
            "docs/architecture.md": 900, "docs/diffusion_planner.md": 900, "docs/guidance.md": 1000, "docs/cbv_identification.md": 450,
-           "docs/realism.md": 900, "docs/statistics.md": 900, "docs/where_we_differ.md": 800, "docs/challenging.md": 600, "docs/planners.md": 700, "docs/comparison.md": 400,
+           "docs/realism.md": 900, "docs/statistics.md": 900, "docs/where_we_differ.md": 750, "docs/challenging.md": 600, "docs/planners.md": 700, "docs/comparison.md": 400,
            **{f"docs/{name}.md": 350 for name in ("pdm_lite", "plant", "pluto", "ppo", "rift", "uniad_mini", "vad_mini")},
            # reference
            "docs/metrics.md": 700, "docs/ros_api.md": 1080, "docs/protocols.md": 900, "docs/camera.md": 600, "docs/neural_network.md": 600,
