@@ -217,8 +217,10 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   const int exit_code = video.finish(writer, writer.exitCode());
   printTable(writer, output);
   if (live != nullptr) live->finish();
-  if (writer.result().verdict.outcome == record::Outcome::kNotJudged && options.verdict.judge)
-    std::cerr << "cdiff: NOT JUDGED: the scenario has no rules, so exit code 0 means nothing\n";
+  const record::Verdict& verdict = writer.result().verdict;
+  if (verdict.outcome == record::Outcome::kNotJudged && options.verdict.judge)
+    std::cerr << "cdiff: NOT JUDGED: " << verdict.reasons.front()
+              << "; exit code 0 means nothing\n";
   const std::string untested = record::untestedText(writer.result());
   if (!untested.empty())
     std::cerr << "cdiff: " << untested << "; why, says report.html, 'Why others were no CBVs'\n";

@@ -181,7 +181,8 @@ Markup liveTable(const std::string& id, const std::vector<std::string>& head,
 std::vector<PageSection> liveSections() {
   return {{"Over time", liveCharts()},
           {"Verdict so far", liveTable("rules", {"So far", "Rule"}, "")},
-          {"Steering", liveTable("changes", {"At [s]", "By", "Changed"}, "Nothing was steered.")},
+          {"Steering",
+           liveTable("changes", {"At [s]", "By", "Changed", "Refused"}, "Nothing was steered.")},
           {"Faults", liveTable("faults", {"At [s]", "Where", "What"}, "No fault.")}};
 }
 

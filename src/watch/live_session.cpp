@@ -159,11 +159,15 @@ void LiveSession::keepTexts(const traffic::TrafficSnapshot& snapshot) {
   const std::string time = core::formatFixed(snapshot.time, 2);
   bool steered = false;
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const traffic::SteeringChange& change : snapshot.steering) {
+  for (const session::SteeringRecord& record :
+       from(writer_->result().steering.records(), steering_seen_)) {
+    const traffic::SteeringChange& change = record.change;
     steered = cbvs_.concerns(change.what) || steered;
     cbvs_.follow(change);
-    if (changes_.size() < kMostRows)
-      changes_.push_back({time, change.by, record::steeringText({snapshot.tick, change})});
+    if (changes_.size() < kMostRows) {
+      changes_.push_back(
+          {time, change.by, record::steeringText({record.tick, change, {}}), record.refused});
+    }
   }
   for (const traffic::Fault& fault : snapshot.faults) {
     if (faults_.size() < kMostRows) faults_.push_back({time, fault.source, fault.text});

@@ -84,7 +84,8 @@ class LiveSession : public session::SessionObserver, private WatchSource {
   // Of the session's thread.
   session::SteeredCbvs cbvs_;
   std::shared_ptr<const page::LiveDecision> decision_ = std::make_shared<page::LiveDecision>();
-  std::size_t frames_seen_ = 0;  ///< of the writer's timeline
+  std::size_t frames_seen_ = 0;    ///< of the writer's timeline
+  std::size_t steering_seen_ = 0;  ///< records of the writer's result
   std::map<std::string, double> scores_;
   Clock::time_point next_verdict_;
 

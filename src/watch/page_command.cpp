@@ -14,7 +14,6 @@ using core::InputError;
 using CommandJson = nlohmann::json;
 using Kind = PageCommand::Kind;
 
-constexpr const char* kPage = "live page";      // who steers, in the record
 constexpr std::uint64_t kMostPageSteps = 1000;  // of one command
 
 /// Discarded when it is no JSON.
@@ -93,7 +92,7 @@ void ControlLink::send(const PageCommand& command, Answer answer) {
         control_.setPace(command.pace);
         break;
       case Kind::kSteer:
-        control_.ask({kPage, command.what, command.value});
+        control_.ask({kLivePage, command.what, command.value});
         break;
     }
     answer("");

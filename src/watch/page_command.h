@@ -10,6 +10,9 @@
 
 namespace cdiff::watch {
 
+/// Who steers by a page, in the record of a session.
+inline constexpr const char* kLivePage = "live page";
+
 /// What a page asks of a session.
 struct PageCommand {
   enum class Kind { kPause, kResume, kStep, kPace, kSteer };

@@ -175,10 +175,27 @@ TEST(LiveSession, OfASliderTheLastPlaceCounts) {
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_EQ(changes[0][1], "live page");
   EXPECT_EQ(changes[0][2], "target_speed 8 -> 4");
+  EXPECT_EQ(changes[0][3], "") << "not refused";
   run.stop();
   run.end();
   ASSERT_EQ(run.result().steering.records().size(), 1U);
   EXPECT_TRUE(run.result().steering.byHand());
+}
+
+TEST(LiveSession, TellsWhyAChosenVehicleWasNotTaken) {
+  WatchedRun run(600.0);
+  PageSocket page(run.address());
+  EXPECT_EQ(page.ask({{"do", "pause"}}), "");
+  EXPECT_EQ(page.ask(steer("choose", kOddName)), "") << "the gates of CBVs come later";
+  letGo(page);
+  const Json changes = page.next("changes");
+  run.stop();
+  run.end();
+  ASSERT_EQ(run.result().steering.records().size(), 1U);
+  const std::string refused = run.result().steering.records()[0].refused;
+  EXPECT_NE(refused, "");
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0][3], refused);
 }
 
 }  // namespace

@@ -9,7 +9,10 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "node_graph/lockstep/message_gate.h"
 #include "node_graph/messages/traffic_conversions.h"
+#include "node_graph/session_graph.h"
+#include "watch/page_command.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -101,6 +104,11 @@ std::optional<session::PlacedVehicle> placedAt(const map::RoadNetwork& network,
   return std::nullopt;
 }
 
+/// Who calls, for the record: the metrics node asks for what the pages that it shows ask for.
+std::string callerText(const std::string& caller) {
+  return caller == siblingNode(kMetricsNode) ? watch::kLivePage : "node " + caller;
+}
+
 }  // namespace
 
 SessionServices::SessionServices(session::SessionControl& control,
@@ -134,7 +142,7 @@ template <class Service>
 void SessionServices::offer(const std::string& name, Answer<Service> answer) {
   using Event = ros::ServiceEvent<typename Service::Request, typename Service::Response>;
   const boost::function<bool(Event&)> call = [this, answer](Event& event) {
-    (this->*answer)(event.getRequest(), event.getResponse(), "node " + event.getCallerName());
+    (this->*answer)(event.getRequest(), event.getResponse(), callerText(event.getCallerName()));
     return true;
   };
   servers_.push_back(node_.advertiseService<Event>(name, call));

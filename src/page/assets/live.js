@@ -171,7 +171,7 @@
     if (news.frame !== null) fillObjectives(news.frame.objectives);
   };
   part("vehicle").addEventListener("input", () => choose(part("vehicle").value));
-  part("choose").addEventListener("click", () => steer("choose", chosen, chosen + " becomes a CBV"));
+  part("choose").addEventListener("click", () => steer("choose", chosen, chosen + " is to become a CBV"));
   part("release").addEventListener("click", () => steer("release", chosen, chosen + " becomes background"));
   part("remove").addEventListener("click", () => steer("remove", chosen, chosen + " is taken away"));
   let pressed = null;
@@ -381,6 +381,8 @@
     if (message.values) { news.values = message.values; fillValues(); }
     if (message.verdict) fillVerdict(message.verdict);
     addRows("changes", message.changes || []);
+    for (const [at, , text, refused] of message.changes || [])
+      if (refused !== "") say(`Refused at ${at} s: ${text} (${refused})`, true);
     addRows("faults", message.faults || []);
     if (message.over) {
       news.over = true;
