@@ -15,6 +15,7 @@
 #include "node_graph/bags/bag_reader.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/recorded_bag.h"
+#include "record/result_folder.h"
 #include "std_msgs/Float64.h"
 #include "std_msgs/String.h"
 #include "support/temporary_folder.h"
@@ -272,6 +273,8 @@ TEST_F(DamagedBags, ASessionThatNeverEndedIsInterrupted) {
   EXPECT_EQ(outcome.summary["status"], "interrupted");
   EXPECT_EQ(outcome.text,
             "the recording ends at tick 99 (4.95 s) while the session was still running\n");
+  EXPECT_EQ(outcome.ticks, 100U);
+  EXPECT_EQ(record::readTrace(results() / "trace.csv").back().tick, 99U);
 }
 
 TEST_F(DamagedBags, ASecondSessionIsNotMixedIn) {

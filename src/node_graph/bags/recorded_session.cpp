@@ -9,7 +9,6 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "node_graph/bags/recorded_channels.h"
-#include "node_graph/lockstep/tick_record.h"
 #include "node_graph/messages/message_checks.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
@@ -19,7 +18,6 @@ namespace cdiff::node_graph {
 namespace {
 
 using core::InputError;
-using traffic::SessionStatus;
 
 constexpr std::size_t kWindow = 50;         // snapshots that wait for late answers
 constexpr std::size_t kMostFindings = 100;  // the rest is counted
@@ -197,7 +195,7 @@ void RecordedSession::takeSelection(const BagMessage& message) {
 
 /// The last snapshot waits for the end of the file, so that it can name all that was found.
 bool RecordedSession::frontIsReady() const {
-  if (snapshots_.empty() || !running(*snapshots_.front())) return false;
+  if (snapshots_.size() < 2 || !running(*snapshots_.front())) return false;
   if (snapshots_.size() > kWindow) return true;
   return images_ == RecordedImages::kSeen && answers_.missing(*snapshots_.front()).empty();
 }
@@ -206,7 +204,7 @@ RecordedSession::Snapshot RecordedSession::next() {
   if (last_ && !running(*last_)) return nullptr;
   while (!frontIsReady() && readMessage()) {
   }
-  if (snapshots_.empty()) return last_ ? unrecordedEnd() : nullptr;
+  if (snapshots_.empty()) return nullptr;
   const Snapshot front = snapshots_.front();
   snapshots_.pop_front();
   if (!running(*front) && !snapshots_.empty())
@@ -215,7 +213,8 @@ RecordedSession::Snapshot RecordedSession::next() {
   if (last_) answers_.forgetBefore(last_->tick + 1);
   checkOrder(*front);
   checkAnswers(*front);
-  return handOut(front);
+  const bool cut_off = running(*front) && snapshots_.empty();
+  return handOut(cut_off ? cutOff(front) : front);
 }
 
 /// Adds to the snapshot what was found since the last one.
@@ -251,17 +250,17 @@ void RecordedSession::checkAnswers(const msgs::TrafficSnapshot& snapshot) {
     unanswered_ = tickText(snapshot.tick) + " lacks " + core::joinText(missing, ", ");
 }
 
-RecordedSession::Snapshot RecordedSession::unrecordedEnd() {
-  if (!unanswered_.empty()) find(unanswered_);
-  find("the recording ends at " + tickText(last_->tick) + " (" + core::formatFixed(last_->time, 2) +
+/// The last snapshot of a recording that was cut off, with the end of the session.
+RecordedSession::Snapshot RecordedSession::cutOff(const Snapshot& snapshot) {
+  auto end = boost::make_shared<msgs::TrafficSnapshot>(*snapshot);
+  end->status = msgs::TrafficSnapshot::INTERRUPTED;
+  if (!unanswered_.empty()) {
+    find(unanswered_);
+    end->decision_tick = false;  // nothing waits for these answers
+  }
+  find("the recording ends at " + tickText(end->tick) + " (" + core::formatFixed(end->time, 2) +
        " s) while the session was still running");
-  const traffic::TrafficSnapshot end =
-      endedAfter(fromMsg(*last_), setup_->options().simulation_step, SessionStatus::kInterrupted,
-                 {0, kBagSource, ""});
-  msgs::TrafficSnapshot message = toMsg(end);
-  message.faults.clear();
-  message.late_answers = last_->late_answers;
-  return handOut(boost::make_shared<const msgs::TrafficSnapshot>(message));
+  return end;
 }
 
 }  // namespace cdiff::node_graph

@@ -69,7 +69,7 @@ class RecordedSession {
   void takeSession(const BagMessage& message);
   bool frontIsReady() const;
   Snapshot handOut(const Snapshot& snapshot);
-  Snapshot unrecordedEnd();
+  Snapshot cutOff(const Snapshot& snapshot);
   void checkOrder(const ::e2e_cdiff::TrafficSnapshot& snapshot);
   void checkAnswers(const ::e2e_cdiff::TrafficSnapshot& snapshot);
   void find(const std::string& text);
