@@ -100,7 +100,8 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
     const bool replaces = status == traffic::SessionStatus::kInterrupted;
     if (!folder.empty() && !replaces && writtenByThisLaunch(folder / "exit_code"))
       return core::ExitCode::kRunTimeError;
-    requireKnownLaunchArguments();  // else it would be the result of another session than was meant
+    requireHeededLaunchArguments();  // else it would be the result of another session than was
+                                     // meant
     const auto options = requestedScenario(parameters);
     folder = resultFolder(parameters.text("results"), options);
     const bool overwrite =

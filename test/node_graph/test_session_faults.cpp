@@ -218,6 +218,35 @@ TEST_F(SessionFaults, UnknownLaunchArgumentIsRefusedOnceAndLeavesNoResult) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
+// roslaunch itself would run the session without such an argument.
+TEST_F(SessionFaults, LaunchArgumentWithALineBreakIsRefused) {
+  session_.launch(R"(set:=$'protocol.time_limit=1\nmax_cbv=1')");
+  EXPECT_LT(session_.endAfter(20.0), 20.0);
+  EXPECT_EQ(session_.exitCode(), "3\n") << session_.log();
+  EXPECT_EQ(timesInLog("argument 'set' holds a line break"), 1U) << session_.log();
+  EXPECT_FALSE(fs::exists(session_.results() / "summary.json"));
+}
+
+TEST_F(SessionFaults, LaunchArgumentWithASecondSignIsRefused) {
+  session_.launch("scenario:=crossing_straight set:=seed:=3");
+  EXPECT_LT(session_.endAfter(20.0), 20.0);
+  EXPECT_EQ(session_.exitCode(), "3\n") << session_.log();
+  EXPECT_EQ(timesInLog("argument 'set' holds ':='"), 1U) << session_.log();
+}
+
+TEST_F(SessionFaults, ScriptNamesAnArgumentOfAnotherKind) {
+  for (const std::string argument :
+       {"record:=banana", "rviz:=1.5", "start_timeout:=abc", "watch_port:=0.5"}) {
+    test::LaunchedSession session;
+    session.start(script("scenario:=crossing_straight " + argument, session));
+    EXPECT_LT(session.endAfter(20.0), 20.0);
+    EXPECT_EQ(session.exitStatus(), 3) << session.log();
+    const std::string name = argument.substr(0, argument.find(':'));
+    EXPECT_EQ(session.log().find("session: argument '" + name + "' is '"), 0U) << session.log();
+    EXPECT_FALSE(fs::exists(session.results()));
+  }
+}
+
 struct Fault {
   const char* process;
   int signal;

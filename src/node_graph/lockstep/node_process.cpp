@@ -138,6 +138,16 @@ void takeArgument(LaunchCommand& command, const std::string& text, std::size_t s
   if (!name.empty() && name.front() != '_' && !value.empty()) command.arguments[name] = value;
 }
 
+/// roslaunch leaves an argument out where it finds no NAME:=VALUE in one line.
+void requireHeededValue(const std::string& name, const std::string& value) {
+  const bool broken = value.find('\n') != std::string::npos;
+  if (!broken && value.find(":=") == std::string::npos) return;
+  throw core::InputError("the value of argument '" + name + "' holds " +
+                         (broken ? "a line break" : "':='") +
+                         ", with which roslaunch ignores the whole argument; expected one line "
+                         "without ':='");
+}
+
 /// Names of the arguments that a launch file declares.
 std::vector<std::string> declaredArguments(const fs::path& launch_file) {
   const std::string text = core::readFile(launch_file, "launch file");
@@ -208,11 +218,12 @@ std::optional<LaunchCommand> launchCommand() {
   return command;
 }
 
-void requireKnownLaunchArguments() {
+void requireHeededLaunchArguments() {
   const std::optional<LaunchCommand> command = launchCommand();
   if (!command) return;
   const std::vector<std::string> known = declaredArguments(command->file);
   for (const auto& [name, value] : command->arguments) {
+    requireHeededValue(name, value);
     if (holds(known, name)) continue;
     throw core::InputError("'" + name + ":=" + value + "': " + command->file.filename().string() +
                            " has no argument '" + name + "'; the nearest one is '" +

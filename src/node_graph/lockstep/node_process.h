@@ -75,8 +75,9 @@ struct LaunchCommand {
 /// package's own launch files and no other.
 std::optional<LaunchCommand> launchCommand();
 
-/// Throws InputError for an argument on that command line that its launch file does not declare:
-/// roslaunch itself ignores it and runs another session than the user meant.
-void requireKnownLaunchArguments();
+/// Throws InputError for an argument on that command line that roslaunch itself ignores, so that it
+/// runs another session than the user meant: its launch file does not declare it, or its value
+/// holds a line break or ":=".
+void requireHeededLaunchArguments();
 
 }  // namespace cdiff::node_graph

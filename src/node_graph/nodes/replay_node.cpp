@@ -277,7 +277,7 @@ int ReplayNode::finish() {
 int runReplay(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
-    requireKnownLaunchArguments();
+    requireHeededLaunchArguments();
     return ReplayNode(parameters, stop).run();
   } catch (const core::InputError&) {
     const std::string given = parameters.text("results");

@@ -346,7 +346,7 @@ void TrafficSimulatorNode::writeResultAlone() {
 int runTrafficSimulator(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
-    requireKnownLaunchArguments();
+    requireHeededLaunchArguments();
     return TrafficSimulatorNode(parameters, stop).run();
   } catch (const core::InputError&) {
     writeRefusal(parameters.text("results"));
