@@ -14,7 +14,9 @@ namespace cdiff::cli {
 using core::ExitCode;
 
 void addRunCommand(CLI::App& program, int& exit_code);
+void addDemoCommand(CLI::App& program, int& exit_code);
 void addEvaluateCommand(CLI::App& program, int& exit_code);
+void addExportCommand(CLI::App& program, int& exit_code);
 void addNewCommand(CLI::App& program, int& exit_code);
 void addValidateCommand(CLI::App& program, int& exit_code);
 void addImportCommand(CLI::App& program, int& exit_code);

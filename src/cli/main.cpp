@@ -54,7 +54,9 @@ namespace {
 void addCommands(CLI::App& program, int& exit_code) {
   using namespace cdiff::cli;
   addRunCommand(program, exit_code);
+  addDemoCommand(program, exit_code);
   addEvaluateCommand(program, exit_code);
+  addExportCommand(program, exit_code);
   addNewCommand(program, exit_code);
   addValidateCommand(program, exit_code);
   addImportCommand(program, exit_code);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The command `cdiff run`: one session in this process, and its result folder.
+/// The commands `cdiff run` and `cdiff demo`: one session in this process, and its result folder.
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -307,7 +307,30 @@ int run(const RunArguments& arguments) {
       options, {folder, arguments.quiet, arguments.record, arguments.overwrite, portOf(arguments)});
 }
 
+/// One shipped session; its table names the report. It passes when the session ran, whatever the
+/// verdict.
+int demo(const fs::path& folder) {
+  session::SessionRequest request;
+  request.scenario = "roundabout_cross";
+  request.seed = "1";
+  RunOutput output;
+  output.folder = fs::absolute(folder);
+  output.overwrite = true;
+  const int exit_code = runSession(session::resolveRequest(request), output);
+  return isJudged(exit_code) ? ExitCode::kPassed : exit_code;
+}
+
 }  // namespace
+
+void addDemoCommand(CLI::App& program, int& exit_code) {
+  auto results = std::make_shared<std::string>("results/demo");
+  CLI::App* command =
+      program.add_subcommand("demo", "Run one shipped session and print where its report is");
+  command
+      ->add_option("--results", *results, "Result folder; what an earlier session left is replaced")
+      ->capture_default_str();
+  command->callback([results, &exit_code] { exit_code = demo(*results); });
+}
 
 void addRunCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();

@@ -10,12 +10,12 @@
 
 #include "cli/commands.h"
 #include "core/csv.h"
-#include "core/file.h"
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/intervals/intervals.h"
+#include "record/result_folder.h"
 #include "what_if/what_if.h"
 
 namespace cdiff::cli {
@@ -34,17 +34,6 @@ struct WhatIfArguments {
   bool without_latest = false;
   what_if::DriverChoice driver;
 };
-
-/// Result folders of sessions: the folder itself, or those of a batch's runs.
-std::vector<fs::path> sessionFolders(const fs::path& result) {
-  if (!core::isFile(result / "matrix.yaml")) return {result};
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(result / "runs")) {
-    if (core::isFile(entry.path() / "session.yaml")) folders.push_back(entry.path());
-  }
-  std::sort(folders.begin(), folders.end());
-  return folders;
-}
 
 /// Of one session: the question that was asked, or one for each contact.
 std::vector<Answer> answersOf(const fs::path& folder, const WhatIfArguments& arguments,
@@ -109,7 +98,7 @@ int askAll(const WhatIfArguments& arguments) {
   head.insert(head.begin(), "run");
   std::string csv = core::csvRow(head);
   std::vector<Answer> all;
-  for (const fs::path& folder : sessionFolders(result)) {
+  for (const fs::path& folder : record::sessionFolders(result)) {
     for (Answer& answer : answersOf(folder, arguments, stop)) {
       std::vector<std::string> cells = what_if::answerCells(answer);
       cells.insert(cells.begin(), folder.filename().string());

@@ -10,6 +10,7 @@
 #include "page/html_report.h"
 #include "record/junit.h"
 #include "record/logs/plan_log.h"
+#include "record/logs/size_log.h"
 #include "record/result_folder.h"
 #include "record/session_text.h"
 #include "record/session_yaml.h"
@@ -42,8 +43,8 @@ class ResultWriter::Record {
         hold_ups_(setup),
         result_{setup,        timeline_, cbv_,      approaches_, plans_, guidance_,
                 front_views_, driving_,  hold_ups_, steering_,   facts} {
-    folder_.remove(
-        {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"});
+    folder_.remove({"session.yaml", "trace.csv", "plans.csv", "vehicles.csv", "summary.json",
+                    "junit.xml", "report.html"});
     folder_.write("session.yaml", record::sessionYaml(setup, facts));
   }
 
@@ -71,6 +72,7 @@ class ResultWriter::Record {
     driving_.observe(snapshot);
     hold_ups_.observe(snapshot);
     steering_.observe(record);
+    sizes_.observe(snapshot);
     writeTrace(snapshot);
   }
 
@@ -86,6 +88,7 @@ class ResultWriter::Record {
       timeline_.addEvent(approach.snapshot);
     completeResult();
     attempt([&] { folder_.write("plans.csv", record::plansCsv(plans_)); });
+    attempt([&] { folder_.write("vehicles.csv", sizes_.csv()); });
     attempt([&] { folder_.write("report.html", htmlReport(result_)); });
     attempt([&] {
       junit_.append(record::junitXml(result_));
@@ -182,6 +185,7 @@ class ResultWriter::Record {
   record::DrivingLog driving_;
   record::HoldUpLog hold_ups_;
   record::SteeringLog steering_;
+  record::SizeLog sizes_;
   record::LatencyLog latencies_;
   record::LateLog late_;
   record::SessionResult result_;

@@ -13,9 +13,9 @@
 
 namespace cdiff::page {
 
-/// Writes a session's result folder: session.yaml, trace.csv, plans.csv, summary.json, junit.xml,
-/// report.html. Observes the session and keeps nothing of wall-clock time in the trace, so the same
-/// session gives the same trace in every deployment.
+/// Writes a session's result folder: session.yaml, trace.csv, plans.csv, vehicles.csv,
+/// summary.json, junit.xml, report.html. Observes the session and keeps nothing of wall-clock time
+/// in the trace, so the same session gives the same trace in every deployment.
 class ResultWriter : public session::SessionObserver {
  public:
   /// Makes the folder (and its parents), removes the files that an earlier session made there,

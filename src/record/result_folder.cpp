@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <set>
@@ -142,9 +143,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What makes a folder one with a result.
-constexpr std::array<const char*, 9> kSessionFiles = {
-    "session.yaml", "trace.csv",   "plans.csv",   "summary.json",      "junit.xml",
-    "report.html",  "session.bag", "session.mp4", "session.bag.active"};
+constexpr std::array<const char*, 10> kSessionFiles = {
+    "session.yaml", "trace.csv",   "plans.csv",   "vehicles.csv", "summary.json",
+    "junit.xml",    "report.html", "session.bag", "session.mp4",  "session.bag.active"};
 /// What the node graph leaves besides.
 constexpr const char* kExitCodeFile = "exit_code";
 constexpr const char* kReserveFolder = ".reserve";
@@ -175,6 +176,23 @@ void requireFree(const fs::path& folder, bool overwrite) {
 }
 
 }  // namespace
+
+std::vector<fs::path> sessionFolders(const fs::path& folder) {
+  constexpr const char* kSession = "session.yaml";
+  if (core::isFile(folder / kSession)) return {folder};
+  const fs::path runs = core::isFile(folder / kBatchFile) ? folder / "runs" : folder;
+  std::vector<fs::path> folders;
+  if (core::isFolder(runs)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(runs)) {
+      if (core::isFile(entry.path() / kSession)) folders.push_back(entry.path());
+    }
+  }
+  std::sort(folders.begin(), folders.end());
+  if (!folders.empty()) return folders;
+  throw core::InputError("'" + folder.string() +
+                         "' holds no session's result: it has no session.yaml, nor has a "
+                         "folder in it");
+}
 
 void requireFreeFolder(const fs::path& folder, bool overwrite) {
   core::FolderLock::requireUnlocked(folder);

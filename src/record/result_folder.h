@@ -65,6 +65,10 @@ struct TraceRow {
 /// and line for anything that is not a trace.
 std::vector<TraceRow> readTrace(const std::filesystem::path& file);
 
+/// Result folders of sessions: the folder itself, those of a batch's runs, or the sub-folders that
+/// hold a session's result, by name. Throws InputError for a folder without any.
+std::vector<std::filesystem::path> sessionFolders(const std::filesystem::path& folder);
+
 /// Throws InputError when another process writes into the folder, when it holds anything of a
 /// session or a batch, unless earlier sessions are to be overwritten (a batch never is), or when it
 /// holds a file of a session's names that this program did not make. Names what it found. A folder

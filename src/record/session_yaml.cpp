@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
 
 #ifndef E2E_CDIFF_VERSION
@@ -158,6 +160,47 @@ std::string sessionYaml(const session::SessionSetup& setup, const RunFacts& fact
          line(1, "version", quoted(facts.simulator_version)) + networkBlock(setup.import()) +
          machineBlock() + inferenceBlock(options, facts) + "scenario:\n" +
          indented(core::dumpOptions(options));
+}
+
+namespace {
+
+constexpr const char* kScenarioLine = "scenario:\n";
+
+/// The scenario of session.yaml, which is written one level deeper than a scenario file.
+std::string scenarioText(const std::string& yaml) {
+  std::string text;
+  for (const std::string& line : core::splitText(yaml.substr(yaml.find(kScenarioLine)), '\n')) {
+    if (line.compare(0, 2, "  ") == 0) text += line.substr(2) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> sessionFacts(const std::string& yaml) {
+  std::map<std::string, std::string> facts;
+  std::string section;
+  for (const std::string& line : core::splitText(yaml.substr(0, yaml.find(kScenarioLine)), '\n')) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos || line.compare(0, 4, "    ") == 0) continue;
+    const bool inside = line.compare(0, 2, "  ") == 0;
+    const std::string key = line.substr(inside ? 2 : 0, colon - (inside ? 2 : 0));
+    const std::string value = colon + 2 < line.size() ? line.substr(colon + 2) : "";
+    if (!inside) section = key;
+    if (!value.empty()) facts[inside ? section + "." + key : key] = value;
+  }
+  return facts;
+}
+
+SessionFile readSessionYaml(const std::filesystem::path& file) {
+  const std::string yaml = core::readFile(file, "session", core::kLargestOptionsFile);
+  if (yaml.find(kScenarioLine) == std::string::npos) {
+    throw core::InputError(file.string() +
+                           ": key 'scenario' is missing; expected what a session writes");
+  }
+  SessionFile session{sessionFacts(yaml), {}};
+  core::loadOptions({file.string() + " (scenario)", scenarioText(yaml)}, session.scenario);
+  return session;
 }
 
 }  // namespace cdiff::record

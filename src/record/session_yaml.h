@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,5 +28,19 @@ std::string instructionSet();
 /// Text of session.yaml: the resolved scenario, seeds, and what it ran on (package, simulator,
 /// network, libraries, processor).
 std::string sessionYaml(const session::SessionSetup& setup, const RunFacts& facts);
+
+// Reads session.yaml back.
+
+/// Values above the scenario, by "key" or "section.key", as written.
+std::map<std::string, std::string> sessionFacts(const std::string& yaml);
+
+/// What a session.yaml says.
+struct SessionFile {
+  std::map<std::string, std::string> facts;  ///< sessionFacts
+  session::ScenarioOptions scenario;         ///< resolved, SI units
+};
+
+/// Throws InputError naming file and key for what no session wrote.
+SessionFile readSessionYaml(const std::filesystem::path& file);
 
 }  // namespace cdiff::record

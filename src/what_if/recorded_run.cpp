@@ -19,33 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using core::InputError;
 
-constexpr const char* kScenarioLine = "scenario:\n";
-
-/// Values of session.yaml above its scenario, by "key" or "section.key", as written.
-std::map<std::string, std::string> factsOf(const std::string& yaml) {
-  std::map<std::string, std::string> facts;
-  std::string section;
-  for (const std::string& line : core::splitText(yaml.substr(0, yaml.find(kScenarioLine)), '\n')) {
-    const std::size_t colon = line.find(':');
-    if (colon == std::string::npos || line.compare(0, 4, "    ") == 0) continue;
-    const bool inside = line.compare(0, 2, "  ") == 0;
-    const std::string key = line.substr(inside ? 2 : 0, colon - (inside ? 2 : 0));
-    const std::string value = colon + 2 < line.size() ? line.substr(colon + 2) : "";
-    if (!inside) section = key;
-    if (!value.empty()) facts[inside ? section + "." + key : key] = value;
-  }
-  return facts;
-}
-
-/// The scenario of session.yaml, which is written one level deeper than a scenario file.
-std::string scenarioText(const std::string& yaml) {
-  std::string text;
-  for (const std::string& line : core::splitText(yaml.substr(yaml.find(kScenarioLine)), '\n')) {
-    if (line.compare(0, 2, "  ") == 0) text += line.substr(2) + "\n";
-  }
-  return text;
-}
-
 /// What a key of session.yaml is to people; nullptr where it does not decide how a session runs.
 const char* subjectOf(const std::string& key) {
   const std::pair<const char*, const char*> subjects[] = {
@@ -80,11 +53,9 @@ RecordedRun::RecordedRun(const fs::path& folder) : folder_(folder) {
 
 void RecordedRun::readSession() {
   const std::string file = (folder_ / "session.yaml").string();
-  const std::string yaml = core::readFile(file, "session", core::kLargestOptionsFile);
-  if (yaml.find(kScenarioLine) == std::string::npos)
-    throw InputError(file + ": key 'scenario' is missing; expected what a session writes");
-  facts_ = factsOf(yaml);
-  core::loadOptions({file + " (scenario)", scenarioText(yaml)}, scenario_);
+  record::SessionFile session = record::readSessionYaml(file);
+  facts_ = std::move(session.facts);
+  scenario_ = std::move(session.scenario);
   if (facts_.count("recorded_by") > 0) {
     throw InputError(file +
                      ": is the result of a replay, which does not say with which weights the "
@@ -164,7 +135,8 @@ std::optional<traffic::ControlAction> RecordedRun::actionAt(std::uint64_t tick,
 
 void RecordedRun::requireUnchanged(const session::SessionSetup& setup,
                                    const std::string& simulator_version) const {
-  auto now = factsOf(record::sessionYaml(setup, {"cdiff what_if", simulator_version, true}));
+  auto now =
+      record::sessionFacts(record::sessionYaml(setup, {"cdiff what_if", simulator_version, true}));
   for (const auto& [key, value] : facts_) {
     const char* subject = subjectOf(key);
     if (subject == nullptr || now[key] == value) continue;

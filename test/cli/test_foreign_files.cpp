@@ -137,9 +137,10 @@ TEST_F(ForeignFiles, ASessionLeavesThemAlone) {
 }
 
 TEST_F(ForeignFiles, ASessionIsRefusedWhereOneHasItsName) {
-  const Words names = {"session.yaml", "trace.csv",   "plans.csv",    "summary.json",
-                       "junit.xml",    "report.html", "session.bag",  "session.mp4",
-                       "exit_code",    ".lock",       ".cdiff_files", "summary.json.part"};
+  const Words names = {"session.yaml",     "trace.csv", "plans.csv",   "vehicles.csv",
+                       "summary.json",     "junit.xml", "report.html", "session.bag",
+                       "session.mp4",      "exit_code", ".lock",       ".cdiff_files",
+                       "summary.json.part"};
   for (const std::string& name : names) {
     fs::remove_all(results());
     known_.clear();

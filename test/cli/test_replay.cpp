@@ -168,8 +168,9 @@ TEST_F(ReplayCommand, AFullDiskIsAClearErrorAndNoFileIsHalfWritten) {
     }
     for (const auto& entry : fs::directory_iterator(replayed())) {
       const std::string name = entry.path().filename();
-      EXPECT_TRUE(name == "session.yaml" || name == "plans.csv" || name == "summary.json" ||
-                  name == "junit.xml" || name == core::OutputFolder::kRecord)
+      EXPECT_TRUE(name == "session.yaml" || name == "plans.csv" || name == "vehicles.csv" ||
+                  name == "summary.json" || name == "junit.xml" ||
+                  name == core::OutputFolder::kRecord)
           << name;
     }
     EXPECT_EQ(summary()["status"], "error");

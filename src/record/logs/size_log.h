@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+
+namespace cdiff::record {
+
+/// The size of a vehicle's box [m], by its id.
+using SizesById = std::unordered_map<std::string, traffic::VehicleDimensions>;
+
+/// Sizes [m] of all vehicles of a session, which trace.csv does not hold.
+class SizeLog {
+ public:
+  /// Every tick. A vehicle keeps the size that it had first.
+  void observe(const traffic::TrafficSnapshot& snapshot);
+  /// Text of vehicles.csv: a row per vehicle in the order of appearance, sizes in meters.
+  std::string csv() const;
+
+ private:
+  SizesById sizes_;
+  std::vector<std::string> ids_;  ///< in the order of appearance
+};
+
+/// Reads vehicles.csv back. Throws InputError naming file and line for anything else.
+SizesById readSizes(const std::filesystem::path& file);
+
+}  // namespace cdiff::record
