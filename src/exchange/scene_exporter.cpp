@@ -3,6 +3,7 @@
 #include "exchange/scene_exporter.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/csv.h"
 #include "core/file.h"
@@ -56,8 +57,13 @@ ExportFormat exportFormat(const std::string& name) {
                          ": expected openscenario, commonroad or csv");
 }
 
-SceneExporter::SceneExporter(const std::filesystem::path& folder, const ExportOptions& options)
-    : options_(options), folder_(folder) {}
+SceneExporter::SceneExporter(std::filesystem::path folder, ExportOptions options)
+    : path_(std::move(folder)), options_(std::move(options)) {}
+
+void SceneExporter::write(const std::string& name, const std::string& text) {
+  if (!folder_) folder_.emplace(path_);
+  folder_->write(name, text);
+}
 
 std::string SceneExporter::add(const std::filesystem::path& result, const std::string& name) {
   const RecordedScene scene = readScene(result, options_.scene);
@@ -68,7 +74,7 @@ std::string SceneExporter::add(const std::filesystem::path& result, const std::s
   if (!scene.sizes_known)
     report += "  the result has no vehicles.csv: all are cars of 4.5 m x 1.8 m\n";
   const std::string text = fileText(scene, report);
-  folder_.write(file, text);
+  write(file, text);
   rows_[name] = indexRow(file, scene);
   return report;
 }
@@ -99,14 +105,14 @@ std::string SceneExporter::networkFileOf(const RecordedScene& scene, std::string
   for (int number = 2; taken(file); ++number) file = stem + "_" + std::to_string(number) + ".xodr";
   const OpenDriveNetwork network = openDriveOf(scene.import);
   report += "  " + file + ": " + accuracyText(network) + "\n";
-  folder_.write(file, network.text);
+  write(file, network.text);
   return networks_[key] = file;
 }
 
 void SceneExporter::finish() {
   std::string text = core::csvRow(indexHead());
   for (const auto& [name, row] : rows_) text += row;
-  folder_.write(kIndex, text);
+  write(kIndex, text);
 }
 
 }  // namespace cdiff::exchange

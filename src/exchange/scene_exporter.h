@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,12 +34,12 @@ struct ExportOptions {
 /// replaced.
 class SceneExporter {
  public:
-  /// Throws InputError when the folder cannot be made.
-  SceneExporter(const std::filesystem::path& folder, const ExportOptions& options);
+  /// The folder is made when the first file is written.
+  SceneExporter(std::filesystem::path folder, ExportOptions options);
 
   /// Exports a session's result folder as a file called `name` with the ending of the format, and
   /// returns what to tell the user. Throws InputError as readScene, openDriveOf and commonRoadFile
-  /// do, and when a file that is not the program's has the name.
+  /// do, when the folder cannot be made, and when a file that is not the program's has the name.
   std::string add(const std::filesystem::path& result, const std::string& name);
   /// Writes index.csv: a row per case, by name.
   void finish();
@@ -47,8 +48,11 @@ class SceneExporter {
   std::string networkFileOf(const RecordedScene& scene, std::string& report);
   std::string fileText(const RecordedScene& scene, std::string& report);
 
+  void write(const std::string& name, const std::string& text);
+
+  std::filesystem::path path_;
   ExportOptions options_;
-  core::OutputFolder folder_;
+  std::optional<core::OutputFolder> folder_;
   std::map<std::string, std::string> networks_;  ///< file, by SHA-256 of the network
   std::map<std::string, std::string> rows_;      ///< of the index, by name
 };

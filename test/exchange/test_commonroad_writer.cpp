@@ -71,12 +71,12 @@ TEST_F(CommonRoadWriter, LaneletsHaveTheLanesBordersAndLinks) {
   for (const pugi::xml_node lanelet : root.children("lanelet"))
     ids.insert(lanelet.attribute("id").as_int());
   EXPECT_EQ(ids.size(), 9U);  // six edges and three lanes inside the junction
-  // The first lane leads east along y = -2 and is 3.2 m wide: its left border is at y = -0.4.
+  // The first lane leads east along y = -2 and is 4 m wide: its left border is at y = 0.
   const pugi::xml_node lanelet = root.child("lanelet");
   const pugi::xml_node left = lanelet.child("leftBound").child("point");
-  EXPECT_NEAR(left.child("y").text().as_double(), -0.4, 1e-6);
+  EXPECT_NEAR(left.child("y").text().as_double(), 0.0, 1e-6);
   const pugi::xml_node right = lanelet.child("rightBound").child("point");
-  EXPECT_NEAR(right.child("y").text().as_double(), -3.6, 1e-6);
+  EXPECT_NEAR(right.child("y").text().as_double(), -4.0, 1e-6);
   for (const char* link : {"predecessor", "successor"}) {
     for (const pugi::xml_node each : root.children("lanelet"))
       for (const pugi::xml_node to : each.children(link))

@@ -23,8 +23,8 @@ class Schemas : public testing::Test {
     const auto file = session_.path("export.xml");
     const auto output = session_.path("output");
     core::writeFileAtomically(file, text);
-    test::ProgramRun run(xmllint->string(),
-                         {"--noout", "--schema", schema.string(), file.string()}, output);
+    test::ProgramRun run(xmllint->string(), {"--noout", "--schema", schema.string(), file.string()},
+                         output);
     EXPECT_EQ(run.wait(), 0) << core::readFile(output, "output");
   }
   test::RecordedSession session_;
