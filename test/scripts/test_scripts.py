@@ -93,7 +93,7 @@ class Scripts(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             root = Path(folder)
             (root / "src/toy").mkdir(parents=True)
-            for name in ("scripts/setup", "scripts/packages.txt", "scripts/benchmark", "benchmark/build_benchmark.py"):
+            for name in ("scripts/setup", "scripts/packages.txt", "scripts/packages_build.txt", "scripts/benchmark", "benchmark/build_benchmark.py"):
                 (root / name).parent.mkdir(exist_ok=True)
                 shutil.copy(SOURCE / name, root / name)
             (root / "CMakeLists.txt").write_text("project(toy LANGUAGES CXX)\nadd_library(toy src/toy/a.cpp src/toy/b.cpp)\n"
@@ -119,6 +119,18 @@ class Scripts(unittest.TestCase):
     def test_demo_builds_no_test_and_no_benchmark(self):
         with tempfile.TemporaryDirectory() as results:
             self.assertEqual(targets_of(calls_of("demo", results)), [["e2e_cdiff_session_programs"]])
+
+    def test_demo_configures_no_trainer_and_no_test(self):
+        with tempfile.TemporaryDirectory() as results:
+            configured = next(call for call in calls_of("demo", results) if call[0] == "cmake")
+        for part in ("TESTS", "BENCHMARKS", "TRAINING"):
+            self.assertIn(f"-DE2E_CDIFF_{part}=OFF", configured)
+
+    def test_packages_of_sessions_are_those_that_the_demo_installs(self):
+        sessions, build = ((SOURCE / f"scripts/{name}.txt").read_text(encoding="utf-8").split() for name in ("packages", "packages_build"))
+        for package in ("libtorch-dev", "libgtest-dev", "libbenchmark-dev"):
+            self.assertNotIn(package, sessions)
+            self.assertIn(package, build)
 
     def test_demo_builds_nothing_for_help_or_bad_arguments(self):
         for arguments in (["--help"], ["--bogus"], ["one", "two"]):
