@@ -22,6 +22,18 @@ std::atomic<bool> stop_requested{false};
 
 void requestStop(int) { stop_requested = true; }
 
+void endAtOnce(int) {
+  static constexpr char kText[] = "interrupted\n";
+  static_cast<void>(::write(STDERR_FILENO, kText, sizeof(kText) - 1));
+  ::_exit(ExitCode::kInterrupted);
+}
+
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  ::sigaction(signal, &action, nullptr);
+}
+
 bool isIgnored(int signal) {
   struct sigaction action {};
   ::sigaction(signal, nullptr, &action);
@@ -50,6 +62,9 @@ void prepareProgram() {
   }
   ignoreSignal(SIGPIPE);
   ignoreSignal(SIGXFSZ);
+  for (const int signal : stopSignals()) {
+    if (!isIgnored(signal)) handle(signal, endAtOnce);
+  }
 }
 
 std::vector<int> stopSignals() {
@@ -60,9 +75,7 @@ std::vector<int> stopSignals() {
 
 const std::atomic<bool>& catchStopSignals() {
   stop_requested = false;
-  struct sigaction action {};
-  action.sa_handler = requestStop;
-  for (const int signal : stopSignals()) ::sigaction(signal, &action, nullptr);
+  for (const int signal : stopSignals()) handle(signal, requestStop);
   return stop_requested;
 }
 

@@ -65,6 +65,30 @@ TEST(Program, WritesBeyondALimitAreErrorsThatNameIt) {
   EXPECT_EQ(code, 0);
 }
 
+TEST(Program, AStopSignalBeforeThereIsAnythingToStopEndsItWithAWord) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const ProcessOutput errors;
+    const int code = inChild([&] {
+      ::dup2(errors.descriptor(), STDERR_FILENO);
+      prepareProgram();
+      ::raise(signal);
+      return 0;
+    });
+    EXPECT_EQ(code, ExitCode::kInterrupted) << signal;
+    EXPECT_EQ(errors.end(), "interrupted\n") << signal;
+  }
+}
+
+TEST(Program, ASignalThatTheCallerIgnoresStaysIgnored) {
+  const int code = inChild([] {
+    ::signal(SIGINT, SIG_IGN);
+    prepareProgram();
+    ::raise(SIGINT);
+    return 0;
+  });
+  EXPECT_EQ(code, 0);
+}
+
 TEST(Program, ThreeSignalsRequestAStop) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     EXPECT_EQ(inChild([signal] {
