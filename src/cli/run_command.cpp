@@ -28,8 +28,11 @@
 #include "video/session_video.h"
 #include "watch/live_session.h"
 #ifdef E2E_CDIFF_WITH_ROS
+#include "cli/watched_run.h"
 #include "node_graph/bags/recorded_steering.h"
 #include "node_graph/bags/session_bag_writer.h"
+#include "node_graph/result_reserve.h"
+#include "plugins/plugin_loader.h"
 #endif
 
 namespace cdiff::cli {
@@ -48,6 +51,7 @@ struct RunOutput {
   bool record = false;     ///< also write session.bag; InputError where built without ROS
   bool overwrite = false;  ///< what an earlier session left in the folder is removed
   std::optional<std::uint16_t> watch_port = {};  ///< of a live page; 0: a free one; absent: none
+  double answer_timeout = 30.0;                  ///< of one call of a plug-in, wall time [s]
 };
 
 bool isJudged(int exit_code) {
@@ -166,6 +170,22 @@ std::unique_ptr<watch::LiveSession> makeLiveSession(const session::SessionSetup&
   return live;
 }
 
+/// What a session with plug-ins keeps for the process that waits for this one; else nothing.
+std::unique_ptr<session::SessionObserver> makeReserve(const session::SessionSetup& setup,
+                                                      const RunOutput& output,
+                                                      session::ClosedLoop& loop) {
+#ifdef E2E_CDIFF_WITH_ROS
+  if (plugins::loadPlugins().empty()) return nullptr;
+  const node_graph::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
+  auto reserve = std::make_unique<node_graph::ProcessReserve>(setup, output.folder, origin);
+  loop.addObserver(*reserve);
+  return reserve;
+#else
+  (void)setup, (void)output, (void)loop;
+  return nullptr;
+#endif
+}
+
 /// The session's table, and what it was asked to record.
 void printTable(const page::ResultWriter& writer, const RunOutput& output) {
   if (output.quiet) return;
@@ -192,6 +212,7 @@ void finishResult(page::ResultWriter& writer, double wall_seconds) {
 int drive(const session::SessionSetup& setup, const RunOutput& output, session::ClosedLoop& loop,
           watch::LiveSession* live, const std::atomic<bool>& stop, Clock::time_point begin) {
   const session::ScenarioOptions& options = setup.options();
+  const auto reserve = makeReserve(setup, output, loop);
   page::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
                             output.folder);
   Progress progress(session::longestTime(options.protocol, setup.egoRoute()),
@@ -227,16 +248,9 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   return !bag_error.empty() && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
 }
 
-/// Runs to the end and answers the exit code. SIGINT, SIGTERM and SIGHUP end the session as
-/// interrupted. Throws InputError for a scenario that cannot be set up or that SUMO refuses, and
-/// for a folder that is in use or holds an earlier result (nothing in it is touched then); a
-/// simulator that cannot start or is lost gives a result folder with status error.
-int runSession(const session::ScenarioOptions& options, const RunOutput& output) {
-  const std::atomic<bool>& stop = core::catchStopSignals();
-  record::requireFreeFolder(output.folder, output.overwrite);
-  const session::SessionSetup setup(options);
-  for (const std::string& warning : session::scenarioWarnings(setup))
-    std::cerr << "cdiff: warning: " << warning << "\n";
+/// Claims the folder and runs the session.
+int runHere(const session::SessionSetup& setup, const RunOutput& output,
+            const std::atomic<bool>& stop) {
   const Clock::time_point begin = Clock::now();
   const auto claim = [&] {
     return record::ResultFolder(output.folder, "cdiff run", output.overwrite);
@@ -258,6 +272,27 @@ int runSession(const session::ScenarioOptions& options, const RunOutput& output)
   return drive(setup, output, *loop, live.get(), stop, begin);
 }
 
+/// Runs to the end and answers the exit code. SIGINT, SIGTERM and SIGHUP end the session as
+/// interrupted. Throws InputError for a scenario that cannot be set up or that SUMO refuses, and
+/// for a folder that is in use or holds an earlier result (nothing in it is touched then); a
+/// simulator that cannot start or is lost gives a result folder with status error. A session with
+/// plug-ins runs in a process of its own.
+int runSession(const session::ScenarioOptions& options, const RunOutput& output) {
+  const std::atomic<bool>& stop = core::catchStopSignals();
+  record::requireFreeFolder(output.folder, output.overwrite);
+  const session::SessionSetup setup(options);
+  for (const std::string& warning : session::scenarioWarnings(setup))
+    std::cerr << "cdiff: warning: " << warning << "\n";
+#ifdef E2E_CDIFF_WITH_ROS
+  if (!plugins::loadPlugins().empty()) {
+    return runWatched(
+        {setup, output.folder, output.overwrite, output.quiet, output.answer_timeout, stop},
+        [&] { return runHere(setup, output, stop); });
+  }
+#endif
+  return runHere(setup, output, stop);
+}
+
 struct RunArguments {
   session::SessionRequest request;
   std::string steering;
@@ -267,6 +302,7 @@ struct RunArguments {
   bool overwrite = false;
   bool watch = false;
   std::uint16_t watch_port = 0;
+  double answer_timeout = 30.0;
 };
 
 /// Of the live page, where one is asked for.
@@ -303,8 +339,8 @@ int run(const RunArguments& arguments) {
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
                                    std::to_string(options.seed) + "_" + core::timeForFileName())
           : fs::path(arguments.results);
-  return runSession(
-      options, {folder, arguments.quiet, arguments.record, arguments.overwrite, portOf(arguments)});
+  return runSession(options, {folder, arguments.quiet, arguments.record, arguments.overwrite,
+                              portOf(arguments), arguments.answer_timeout});
 }
 
 /// One shipped session; its table names the report. It passes when the session ran, whatever the
@@ -365,6 +401,10 @@ void addRunCommand(CLI::App& program, int& exit_code) {
       ->add_option("--watch-port", arguments->watch_port,
                    "Port of that page (default: any that is free)")
       ->needs(watch);
+  command
+      ->add_option("--answer-timeout", arguments->answer_timeout,
+                   "Seconds of wall time for one call of a plug-in (default: 30)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", arguments->quiet, "No progress line, no table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

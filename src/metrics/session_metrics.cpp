@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/forked_work.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
 #include "metrics/tick_observer.h"
@@ -66,6 +67,7 @@ std::optional<traffic::Fault> faultOf(const MetricDescriptor& metric, const char
                           std::string(function) + "() of metric '" + metric.name + "' of " +
                               metric.source + " threw: " + text + "; its measures are left out"};
   };
+  const core::NamedCall named("metric", metric.name);
   try {
     call();
     return std::nullopt;
@@ -84,7 +86,17 @@ void leaveOut(const MetricDescriptor& metric, const traffic::Fault& fault,
   measures.faults.push_back(fault);
 }
 
+/// Why metrics of these names are left out of the sessions of this process.
+std::map<std::string, std::string>& reasonsToLeaveOut() {
+  static std::map<std::string, std::string> reasons;
+  return reasons;
+}
+
 }  // namespace
+
+void leaveOutMetric(const std::string& name, const std::string& reason) {
+  reasonsToLeaveOut()[name] = reason;
+}
 
 class SessionMetrics::Metrics {
  public:
@@ -92,6 +104,13 @@ class SessionMetrics::Metrics {
           const map::Route& ego_route)
       : options_(options), context_{drivable_area, ego_route, options_}, ticks_(context_) {
     for (const MetricDescriptor& descriptor : metricDescriptors()) {
+      const auto reason = reasonsToLeaveOut().find(descriptor.name);
+      if (reason != reasonsToLeaveOut().end()) {
+        const traffic::Fault fault{0, "metric:" + descriptor.name, reason->second};
+        metrics_.push_back({&descriptor, nullptr, fault});
+        continue;
+      }
+      const core::NamedCall call("metric", descriptor.name, core::NamedCall::Limit::kNone);
       metrics_.push_back({&descriptor, descriptor.make(context_), std::nullopt});
       if (metrics_.back().metric) continue;
       throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +

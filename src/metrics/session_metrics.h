@@ -51,6 +51,9 @@ struct TickMeasures {
   std::size_t cbv_off_road = 0;  ///< CBVs now off the drivable area
 };
 
+/// From now on the sessions of this process leave a metric out: its measures have this reason.
+void leaveOutMetric(const std::string& name, const std::string& reason);
+
 /// All registered metrics of one session. They measure from its snapshots and selections alone:
 /// the same online, from a bag, and in one process.
 class SessionMetrics {

@@ -31,9 +31,21 @@ namespace {
 
 constexpr double kMasterPatience = 5.0;  // [s] of wall time for a master that does not answer
 
-int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
+/// What plug-ins throw while they are loaded: ROS says it, which begins later, with threads of its
+/// own.
+std::exception_ptr loadPlugins() {
   try {
     plugins::loadPlugins();
+    return nullptr;
+  } catch (...) {
+    return std::current_exception();
+  }
+}
+
+int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop,
+               const std::exception_ptr& wrong_plugin) {
+  try {
+    if (wrong_plugin) std::rethrow_exception(wrong_plugin);
     return body(stop);
   } catch (const std::exception& error) {
     const core::Failure failure = core::failureOf(error);
@@ -60,6 +72,7 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
             const std::function<int()>& without_master = {}) {
   core::prepareProgram();
   StopSignal stop;
+  const std::exception_ptr wrong_plugin = loadPlugins();
   initWithoutClock(argc, argv, name);
   if (!ros::master::check()) {
     ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch",
@@ -69,7 +82,7 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
   ros::master::setRetryTimeout(ros::WallDuration(kMasterPatience));
   ros::start();  // else ROS would end with the last node handle, and an error after that
                  // would not be logged
-  const int exit_code = runGuarded(body, stop);
+  const int exit_code = runGuarded(body, stop, wrong_plugin);
   ros::shutdown();
   return exit_code;
 }

@@ -2,8 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/result_reserve.h"
 
+#include <algorithm>
 #include <iostream>
+#include <utility>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/lockstep/tick_record.h"
@@ -33,6 +36,14 @@ class ToleratedWriter : public session::SessionObserver {
   page::ResultWriter& writer_;
 };
 
+void removeReserve(core::OutputFolder& results) {
+  try {
+    results.remove({kReserve});
+  } catch (const core::InputError&) {
+    // It stays on the record, and goes with the next session.
+  }
+}
+
 int finishResult(page::ResultWriter& writer, double wall_seconds) {
   writer.finish(wall_seconds);
   std::cout << writer.table() << std::flush;
@@ -58,11 +69,7 @@ ResultReserve::ResultReserve(const session::SessionSetup& setup, const msgs::Ses
 
 ResultReserve::~ResultReserve() {
   bag_.reset();
-  try {
-    results_.remove({kReserve});
-  } catch (const core::InputError&) {
-    // It stays on the record, and goes with the next session.
-  }
+  removeReserve(results_);
 }
 
 void ResultReserve::giveUp(const std::string& why) {
@@ -117,6 +124,88 @@ int ResultReserve::writeEnd(const msgs::TrafficSnapshot& end, double wall_second
   tolerated.observe(TickRecordView(end, TickAnswers(), setup_.network()).record());
   writer.recordFault({end.tick, "result folder", "the ticks before the end are lost: " + lost_});
   return finishResult(writer, wall_seconds);
+}
+
+ProcessReserve::ProcessReserve(const session::SessionSetup& setup, const fs::path& results,
+                               const BagOrigin& origin)
+    : results_(results),
+      bag_(std::make_unique<SessionBagWriter>(setup, results_.subfolder(kReserve) / kBag, origin,
+                                              BagFile::Content::kSessionOnly)) {}
+
+ProcessReserve::~ProcessReserve() {
+  bag_.reset();
+  removeReserve(results_);
+}
+
+void ProcessReserve::observe(const session::TickRecord& record) {
+  if (!bag_) return;
+  try {
+    bag_->observe(record);
+  } catch (const core::InputError&) {
+    bag_.reset();
+  }
+}
+
+bool holdsReserve(const fs::path& results) { return core::OutputFolder::lists(results, kReserve); }
+
+namespace {
+
+/// Takes the ticks of a reserve without the faults of its bag, which ends where its process did.
+class AbandonedTicks : public session::SessionObserver {
+ public:
+  explicit AbandonedTicks(page::ResultWriter& writer) : writer_(writer) {}
+
+  void observe(const session::TickRecord& record) override {
+    traffic::TrafficSnapshot snapshot = *record.snapshot;
+    const auto of_bag = [](const traffic::Fault& fault) { return fault.source == kBagSource; };
+    snapshot.faults.erase(std::remove_if(snapshot.faults.begin(), snapshot.faults.end(), of_bag),
+                          snapshot.faults.end());
+    session::TickRecord shown = record;
+    shown.snapshot = &snapshot;
+    writer_.observe(shown);
+    last_ = std::move(snapshot);
+  }
+
+  /// The last tick once more, with the session's end.
+  void end(const AbandonedSession& session) {
+    last_.status = session.status;
+    last_.faults = {{last_.tick, session.source, session.text}};
+    session::TickRecord record;
+    record.snapshot = &last_;
+    writer_.observe(record);
+  }
+
+ private:
+  ToleratedWriter writer_;
+  traffic::TrafficSnapshot last_;
+};
+
+/// nullptr where there is none that can be read.
+std::unique_ptr<RecordedSession> openReserve(const fs::path& results) {
+  const fs::path bag = results / kReserve / (std::string(kBag) + ".active");
+  if (!holdsReserve(results) || !core::isFile(bag)) return nullptr;
+  try {
+    return std::make_unique<RecordedSession>(bag, RecordedImages::kAll);
+  } catch (const core::InputError&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+std::string writeAbandonedResult(const session::SessionSetup& setup, const fs::path& results,
+                                 const AbandonedSession& session) {
+  core::OutputFolder folder(results);
+  folder.removeUnfinished();
+  const std::unique_ptr<RecordedSession> recorded = openReserve(results);
+  const std::string simulator = recorded ? recorded->info().simulator_version : "unknown";
+  page::ResultWriter writer(setup, {"cdiff run", simulator, true}, results);
+  AbandonedTicks ticks(writer);
+  if (recorded) showTicks(*recorded, {&ticks});
+  ticks.end(session);
+  writer.finish(session.wall_seconds);
+  removeReserve(folder);
+  return writer.table();
 }
 
 }  // namespace cdiff::node_graph

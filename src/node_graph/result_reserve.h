@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "node_graph/bags/session_bag_writer.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "record/session_result.h"
+#include "session/session_observer.h"
 #include "session/session_setup.h"
 
 namespace cdiff::node_graph {
@@ -49,5 +51,41 @@ class ResultReserve {
   std::unique_ptr<BagFile> bag_;  ///< null once it was given up
   std::string lost_;              ///< why it was
 };
+
+/// What a session in one process keeps aside of its ticks, in RESULTS/.reserve, where that process
+/// may crash: another one writes the result then (writeAbandonedResult).
+class ProcessReserve : public session::SessionObserver {
+ public:
+  /// `setup` must outlive the object. Throws InputError where the folder holds a .reserve that this
+  /// program did not make, or where nothing can be written.
+  ProcessReserve(const session::SessionSetup& setup, const std::filesystem::path& results,
+                 const BagOrigin& origin);
+  /// Takes RESULTS/.reserve away.
+  ~ProcessReserve() override;
+  /// From a full disk on the ticks are given up.
+  void observe(const session::TickRecord& record) override;
+
+ private:
+  core::OutputFolder results_;
+  std::unique_ptr<SessionBagWriter> bag_;  ///< null once it was given up
+};
+
+/// The end of a session whose process ended before it wrote the result.
+struct AbandonedSession {
+  traffic::SessionStatus status = traffic::SessionStatus::kError;
+  std::string source;  ///< whose fault it is
+  std::string text;    ///< of that fault
+  double wall_seconds = 0.0;
+};
+
+/// Whether the folder holds the reserve of a process.
+bool holdsReserve(const std::filesystem::path& results);
+
+/// Writes the result of such a session into its folder: the ticks of the reserve as far as they can
+/// be read, none where there is none, and its end. The reserve goes. Returns the table that a
+/// terminal shows. Throws InputError when not even a summary can be written.
+std::string writeAbandonedResult(const session::SessionSetup& setup,
+                                 const std::filesystem::path& results,
+                                 const AbandonedSession& session);
 
 }  // namespace cdiff::node_graph

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "core/forked_work.h"
 #include "core/registry.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -78,6 +79,20 @@ planning::PlannerParts withRig(const PlannerDescriptor& descriptor, planning::Pl
   return parts;
 }
 
+std::unique_ptr<planning::Planner> construct(const PlannerDescriptor& descriptor,
+                                             const planning::PlannerParts& parts) {
+  const core::NamedCall call("planner", descriptor.name, core::NamedCall::Limit::kNone);
+  try {
+    return descriptor.make(parts);
+  } catch (const std::exception&) {
+    throw;
+  } catch (...) {
+    throw InputError("planner '" + descriptor.name + "' of " + table().sourceOf(descriptor.name) +
+                     ": its constructor throws something that is no std::exception; its author "
+                     "must mend it");
+  }
+}
+
 }  // namespace
 
 void registerPlanner(PlannerDescriptor descriptor, const std::string& source) {
@@ -107,7 +122,7 @@ std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
   }
   const PlannerDescriptor* known = findPlanner(name);
   const PlannerDescriptor& descriptor = known != nullptr ? *known : table().at(name);
-  auto planner = descriptor.make(isBySlot(name) ? parts : withRig(descriptor, parts));
+  auto planner = construct(descriptor, isBySlot(name) ? parts : withRig(descriptor, parts));
   if (planner) return planner;
   throw InputError("planner '" + name + "' of " + sourceOf(name) +
                    ": its constructor gives none; its author must mend it");

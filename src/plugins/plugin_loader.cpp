@@ -2,7 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "plugins/plugin_loader.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <atomic>
 #include <class_loader/class_loader.hpp>
 #include <cstdlib>
 #include <memory>
@@ -10,6 +14,8 @@
 #include <system_error>
 
 #include "core/file.h"
+#include "core/file_descriptor.h"
+#include "core/forked_work.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/plugins/plugin.h"
@@ -175,9 +181,7 @@ void addAll(const Plugin& plugin, const std::string& what, LoadedPlugin& loaded)
   }
 }
 
-}  // namespace
-
-LoadedPlugin loadPlugin(const PluginLibrary& library) {
+LoadedPlugin loadHere(const PluginLibrary& library) {
   const std::string file = "plug-in '" + library.file.string() + "' (";
   const std::string what = file + "named by " + library.named_by + ")";
   class_loader::ClassLoader& loader = openLibrary(library, what);
@@ -197,6 +201,42 @@ LoadedPlugin loadPlugin(const PluginLibrary& library) {
     addAll(*plugin, of_class, loaded);
   }
   return loaded;
+}
+
+void silenceStreams() {
+  const core::FileDescriptor nowhere(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+  ::dup2(nowhere.get(), STDOUT_FILENO);
+  ::dup2(nowhere.get(), STDERR_FILENO);
+}
+
+/// Loads the library in a copy of this process first: code of it that runs meanwhile may end the
+/// program, or go on for ever.
+void requireLoadable(const PluginLibrary& library) {
+  constexpr double kPatience = 30.0;  // [s]
+  static const std::atomic<bool> never{false};
+  const core::WorkEnd end = core::runForked(
+      [&] {
+        silenceStreams();
+        const core::NamedCall call("plug-in", library.file.string());
+        try {
+          loadHere(library);
+        } catch (...) {
+          // It is said where the library is loaded for use.
+        }
+        return 0;
+      },
+      kPatience, never);
+  if (end.exit_code) return;
+  throw InputError("plug-in '" + library.file.string() + "' (named by " + library.named_by +
+                   ") ends the program that loads it: " + end.how +
+                   "; build it again, or its author must mend it");
+}
+
+}  // namespace
+
+LoadedPlugin loadPlugin(const PluginLibrary& library) {
+  requireLoadable(library);
+  return loadHere(library);
 }
 
 const std::vector<LoadedPlugin>& loadPlugins() {

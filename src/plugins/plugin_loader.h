@@ -32,8 +32,9 @@ struct LoadedPlugin {
 std::vector<PluginLibrary> findPlugins();
 
 /// Loads one library. Throws InputError naming the library and who must act when it cannot be
-/// loaded, exports no plug-in, was built for another version of the API, throws, or takes a name
-/// twice or one of the scenario file's own.
+/// loaded, ends the program that loads it, exports no plug-in, was built for another version of the
+/// API, throws, or takes a name twice or one of the scenario file's own. This process must have one
+/// thread.
 LoadedPlugin loadPlugin(const PluginLibrary& library);
 
 /// Loads all that `findPlugins` finds, once per process; what was loaded.

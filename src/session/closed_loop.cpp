@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "core/forked_work.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
@@ -135,6 +136,7 @@ void ClosedLoop::render(const traffic::Vehicle& vehicle, int slot, Decision& dec
 void ClosedLoop::ask(const LoopPlanner& asked, const std::string& name,
                      std::vector<PlanningTask> tasks, Decision& decision) {
   if (tasks.empty()) return;
+  const core::NamedCall call("planner", name.substr(name.find(':') + 1));
   if (asked.sees) {
     for (const PlanningTask& task : tasks) render(*task.vehicle, task.slot, decision);
     attachImages(decision.images, parts_.cameras->rigs(), tasks);

@@ -4,6 +4,7 @@
 #include "e2e_cdiff/plugins/plugin.h"
 
 #include <class_loader/class_loader.hpp>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace {
@@ -57,6 +58,12 @@ class TestPlugin : public cdiff::plugins::Plugin {
  public:
 #if defined(PLUGIN_throwing_constructor)
   TestPlugin() { throw std::runtime_error("no license found"); }
+#elif defined(PLUGIN_throwing_number)
+  TestPlugin() { throw 5; }
+#elif defined(PLUGIN_aborting)
+  TestPlugin() { std::abort(); }
+#elif defined(PLUGIN_leaving)
+  TestPlugin() { std::exit(0); }
 #endif
   std::vector<cdiff::planning::PlannerDescriptor> planners() const override {
 #if defined(PLUGIN_throwing_list)

@@ -82,6 +82,26 @@ TEST(PluginLoader, NamesWhatIsWrongAndWhoMustAct) {
            }));
 }
 
+TEST(PluginLoader, OneThatEndsTheProgramIsNamed) {
+  expectIn("throws in its constructor; its author must mend it", refusalOf("throwing_number"));
+  expectIn("plugin_aborting.so' (named by the test) ends the program that loads it: signal 6",
+           refusalOf("aborting"));
+  expectIn("ends the program that loads it: exit code 0", refusalOf("leaving"));
+}
+
+// The loader of the system reads such a library beyond its end (SIGBUS), or says that it cannot.
+TEST(PluginLoader, ATruncatedLibraryIsRefused) {
+  const test::TemporaryFolder folder;
+  const fs::path library = folder.path() / "truncated.so";
+  for (const std::uintmax_t parts : {2, 4, 8}) {
+    fs::copy_file(libraryOf("good").file, library, fs::copy_options::overwrite_existing);
+    fs::resize_file(library, fs::file_size(library) / parts);
+    expectIn("truncated.so' (named by the test)", errorOf([&] {
+               loadPlugin({library, "the test"});
+             }));
+  }
+}
+
 /// Sets an environment variable for as long as it lives.
 class Variable {
  public:

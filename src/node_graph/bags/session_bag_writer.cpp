@@ -124,9 +124,10 @@ double latencyOf(const session::TickRecord& record, const std::string& planner) 
 }  // namespace
 
 SessionBagWriter::SessionBagWriter(const session::SessionSetup& setup, const fs::path& file,
-                                   const BagOrigin& origin)
+                                   const BagOrigin& origin, BagFile::Content content)
     : setup_(setup),
-      file_(file, setup.options(), bagTopic),
+      content_(content),
+      file_(file, setup.options(), bagTopic, content),
       metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
       reporter_(setup.options(), [this] { return metrics_.measures(); }) {
   msgs::SessionInfo info = toMsg(setup);
@@ -147,13 +148,17 @@ void SessionBagWriter::observe(const session::TickRecord& record) {
   values.selection = record.selection;
   if (record.actions != nullptr) {
     values.answers = answersOf(record);
-    values.images = record.images;
+    if (content_ == BagFile::Content::kWhole) values.images = record.images;
   }
   TickMessages messages = makeMessages(values, static_cast<int>(options.max_cbv), setup_.rigs());
+  if (content_ == BagFile::Content::kWhole) addMetrics(record, messages);
+  file_.write(messages);
+}
+
+void SessionBagWriter::addMetrics(const session::TickRecord& record, TickMessages& messages) {
   const metrics::TickMeasures measures = metrics_.observe(*record.snapshot, record.selection);
   if (const auto report = reporter_.report(*record.snapshot, measures))
     messages.add(ChannelId::kMetrics, report);
-  file_.write(messages);
 }
 
 std::string SessionBagWriter::plannerOf(int slot) const {

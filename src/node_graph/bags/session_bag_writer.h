@@ -82,9 +82,10 @@ struct BagOrigin {
 /// recorder's, and the images that planners or records were given.
 class SessionBagWriter : public session::SessionObserver {
  public:
-  /// `setup` must outlive the object. Throws InputError naming the file when it cannot be written.
+  /// `setup` must outlive the object. `content` of the session only: without images and metrics,
+  /// too. Throws InputError naming the file when it cannot be written.
   SessionBagWriter(const session::SessionSetup& setup, const std::filesystem::path& file,
-                   const BagOrigin& origin);
+                   const BagOrigin& origin, BagFile::Content content = BagFile::Content::kWhole);
   ~SessionBagWriter() override;
 
   /// Asked at each action whether it carries noise; without it none does.
@@ -100,8 +101,10 @@ class SessionBagWriter : public session::SessionObserver {
  private:
   std::vector<Answer> answersOf(const session::TickRecord& record) const;
   std::string plannerOf(int slot) const;
+  void addMetrics(const session::TickRecord& record, TickMessages& messages);
 
   const session::SessionSetup& setup_;
+  BagFile::Content content_;
   BagFile file_;
   metrics::SessionMetrics metrics_;
   MetricReporter reporter_;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+
+#include "session/session_setup.h"
+
+namespace cdiff::cli {
+
+/// A session whose plug-ins may end or stop the process that runs it.
+struct WatchedRun {
+  const session::SessionSetup& setup;
+  std::filesystem::path folder;   ///< of the result
+  bool overwrite = false;         ///< of an earlier result there
+  bool quiet = false;             ///< no table
+  double answer_timeout = 30.0;   ///< of one call of a planner or metric, wall time [s]
+  const std::atomic<bool>& stop;  ///< set by stop signals
+};
+
+/// Runs `session` in a copy of this process, and returns its exit code. Where the copy ends without
+/// a result, or a call takes too long, this process writes the result, which names what was called.
+int runWatched(const WatchedRun& run, const std::function<int()>& session);
+
+}  // namespace cdiff::cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "core/forked_work.h"
+
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <new>
+#include <thread>
+
+#include "core/guarded_process.h"
+#include "core/program.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::core {
+namespace {
+
+constexpr double kStopPatience = 10.0;  // [s] for a call that goes on when a stop signal comes
+constexpr std::chrono::milliseconds kLookPeriod{10};
+
+std::int64_t steadyNow() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+double secondsFrom(std::int64_t begin) { return 1e-9 * static_cast<double>(steadyNow() - begin); }
+
+/// What both processes see: the copy writes, the other one reads.
+struct SharedState {
+  std::atomic<bool> returned{false};
+  std::atomic<std::int64_t> since{0};  ///< of a limited call [ns of the steady clock]; 0: none
+  std::array<char, 256> call{};        ///< "KIND:NAME"; empty: none
+};
+
+// Global, because a call has no other way to reach it; null where nobody waits for this process.
+SharedState* shared_state = nullptr;
+
+void setCall(const std::string& call, std::int64_t since) {
+  std::array<char, 256>& text = shared_state->call;
+  text[call.copy(text.data(), text.size() - 1)] = '\0';
+  shared_state->since = since;
+}
+
+/// The state of one copy, in memory of both processes.
+class SharedMemory {
+ public:
+  SharedMemory()
+      : place_(::mmap(nullptr, sizeof(SharedState), PROT_READ | PROT_WRITE,
+                      MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+    if (place_ == MAP_FAILED) throw std::bad_alloc();
+    state_ = new (place_) SharedState;
+  }
+  ~SharedMemory() { ::munmap(place_, sizeof(SharedState)); }
+  SharedMemory(const SharedMemory&) = delete;
+  SharedMemory& operator=(const SharedMemory&) = delete;
+  SharedState& state() const { return *state_; }
+
+ private:
+  void* place_;
+  SharedState* state_ = nullptr;
+};
+
+/// Runs in the copy and does not return.
+[[noreturn]] void work(const std::function<int()>& body, SharedState& state, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(ExitCode::kRunTimeError);
+  shared_state = &state;
+  const int exit_code = body();
+  std::cout << std::flush;
+  std::fflush(nullptr);
+  state.returned = true;
+  ::_exit(exit_code);
+}
+
+/// Waits for the end of a copy.
+class Waiting {
+ public:
+  Waiting(pid_t child, const SharedState& state, double call_limit, const std::atomic<bool>& stop)
+      : child_(child), state_(state), call_limit_(call_limit), stop_(stop) {}
+
+  WorkEnd end() {
+    int status = 0;
+    while (::waitpid(child_, &status, WNOHANG) == 0) {
+      if (stop_) passOn();
+      if (how_.empty() && state_.since != 0) endLateCall();
+      std::this_thread::sleep_for(kLookPeriod);
+    }
+    WorkEnd end;
+    if (state_.returned && WIFEXITED(status)) {
+      end.exit_code = WEXITSTATUS(status);
+      return end;
+    }
+    end.how = !how_.empty()         ? how_
+              : WIFSIGNALED(status) ? signalText(WTERMSIG(status))
+                                    : "exit code " + std::to_string(WEXITSTATUS(status));
+    const std::string call = state_.call.data();
+    const std::size_t colon = call.find(':');
+    end.kind = call.substr(0, colon);
+    if (colon != std::string::npos) end.name = call.substr(colon + 1);
+    end.interrupted = stops_ > 0;
+    return end;
+  }
+
+ private:
+  void passOn() {
+    catchStopSignals();  // clears `stop_`, for the next signal
+    if (++stops_ == 1) stopped_at_ = steadyNow();
+    ::kill(child_, SIGINT);
+  }
+
+  void endLateCall() {
+    const double late = secondsFrom(state_.since);
+    const bool given_up = stops_ > 1 || (stops_ == 1 && secondsFrom(stopped_at_) > kStopPatience);
+    if (late <= call_limit_ && !given_up) return;
+    how_ = "no answer for " + formatFixed(late, 0) + " s";
+    ::kill(child_, SIGKILL);
+  }
+
+  pid_t child_;
+  const SharedState& state_;
+  double call_limit_;
+  const std::atomic<bool>& stop_;
+  int stops_ = 0;
+  std::int64_t stopped_at_ = 0;
+  std::string how_;  ///< why it was ended; empty where it was not
+};
+
+}  // namespace
+
+NamedCall::NamedCall(const char* kind, const std::string& name, Limit limit) {
+  if (shared_state == nullptr) return;
+  before_ = shared_state->call.data();
+  since_before_ = shared_state->since;
+  setCall(std::string(kind) + ":" + name, limit == Limit::kNone ? 0 : steadyNow());
+}
+
+NamedCall::~NamedCall() {
+  if (shared_state != nullptr) setCall(before_, since_before_);
+}
+
+WorkEnd runForked(const std::function<int()>& body, double call_limit,
+                  const std::atomic<bool>& stop) {
+  const SharedMemory memory;
+  std::cout << std::flush;  // else the copy would print it once more
+  std::fflush(nullptr);
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child < 0)
+    throw SimulatorError(std::string("a process could not be made: ") + std::strerror(errno));
+  if (child == 0) work(body, memory.state(), parent);
+  return Waiting(child, memory.state(), call_limit, stop).end();
+}
+
+}  // namespace cdiff::core

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace cdiff::core {
+
+// Work in a copy of this process: where code of others crashes or hangs in it, this process lives
+// on and says what that code was.
+
+/// Says what of others is being called, as long as the object exists, to the process that waits
+/// for this one (runForked). Where none waits, nothing happens.
+class NamedCall {
+ public:
+  enum class Limit { kNone, kOfTheWork };
+  /// `kind` and `name` say what is called ("metric", "ego_jerk").
+  NamedCall(const char* kind, const std::string& name, Limit limit = Limit::kOfTheWork);
+  /// The call that was going on before goes on.
+  ~NamedCall();
+  NamedCall(const NamedCall&) = delete;
+  NamedCall& operator=(const NamedCall&) = delete;
+
+ private:
+  std::string before_;
+  std::int64_t since_before_ = 0;
+};
+
+/// How work in a copy of this process ended.
+struct WorkEnd {
+  std::optional<int> exit_code;  ///< what the work returned; absent where it did not return
+  std::string how;           ///< it did not: "signal 11 (Segmentation fault)", "exit code 0", ...
+  std::string kind;          ///< of the call that was going on then; empty: none
+  std::string name;          ///< of that call
+  bool interrupted = false;  ///< it was ended because a stop signal had come
+};
+
+/// Runs `work` in a copy of this process and waits for its end. This process must have one thread;
+/// `work` must not throw. A named call that takes longer than `call_limit` [s of wall time] ends
+/// the copy. Once `stop` is true the copy gets SIGINT; a call that goes on for 10 s more, or until
+/// `stop` is true again, ends it. The copy ends with this process. Throws SimulatorError when no
+/// process can be made.
+WorkEnd runForked(const std::function<int()>& work, double call_limit,
+                  const std::atomic<bool>& stop);
+
+}  // namespace cdiff::core

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A plug-in for the tests that ends or stops the program: its planner as the key crasher.end says,
+/// its metric where the variable CRASHING_METRIC is set. Both drive and measure for a while before.
+#include <class_loader/class_loader.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+
+#include "e2e_cdiff/plugins/plugin.h"
+
+namespace {
+
+constexpr int kCallsBefore = 5;
+
+struct CrasherOptions {
+  std::string end = "none";
+
+  void describe(cdiff::core::OptionsVisitor& visitor) {
+    visitor.text({"end", "", "How it ends the program."}, end,
+                 {"none", "segmentation_fault", "abort", "exit", "endless", "constructor_fault",
+                  "constructor_number"});
+  }
+  void validate() const {}
+};
+
+void endProgram(const std::string& how) {
+  if (how == "segmentation_fault") std::raise(SIGSEGV);
+  if (how == "abort") std::abort();
+  if (how == "exit") std::exit(0);
+  for (volatile bool on = true; how == "endless" && on;) {
+  }
+}
+
+class Crasher : public cdiff::planning::Planner {
+ public:
+  explicit Crasher(const CrasherOptions& options) : options_(options) {
+    if (options_.end == "constructor_fault") std::raise(SIGSEGV);
+    if (options_.end == "constructor_number") throw 5;
+  }
+
+  std::vector<cdiff::planning::PlannedAction> plan(
+      const cdiff::traffic::TrafficSnapshot&,
+      const std::vector<cdiff::planning::PlanningTask>& tasks) override {
+    if (++calls_ > kCallsBefore) endProgram(options_.end);
+    std::vector<cdiff::planning::PlannedAction> actions;
+    for (const cdiff::planning::PlanningTask& task : tasks)
+      actions.push_back({task.slot, task.vehicle->id, {0.6, 0.0, 0.0}, {}});
+    return actions;
+  }
+
+ private:
+  CrasherOptions options_;
+  int calls_ = 0;
+};
+
+constexpr cdiff::metrics::MeasureDefinition kCalls = {
+    "crashing_calls",
+    "",
+    "Calls",
+    "count",
+    cdiff::metrics::Direction::kNeither,
+    cdiff::metrics::Subject::kEgo,
+    "Number of ticks.",
+    "",
+};
+
+class CrashingMetric : public cdiff::metrics::Metric {
+ public:
+  void observe(const cdiff::metrics::MetricTick&) override {
+    const bool ends = std::getenv("CRASHING_METRIC") != nullptr;
+    if (++calls_ > kCallsBefore && ends) endProgram("segmentation_fault");
+  }
+  void report(cdiff::metrics::MetricSink& sink) const override {
+    sink.set(kCalls, {static_cast<double>(calls_), 1, "", ""});
+  }
+
+ private:
+  int calls_ = 0;
+};
+
+class CrashingPlugin : public cdiff::plugins::Plugin {
+ public:
+  std::vector<cdiff::planning::PlannerDescriptor> planners() const override {
+    cdiff::planning::PlannerDescriptor crasher;
+    crasher.name = "crasher";
+    crasher.title = "Crasher";
+    crasher.help = "ends the program.";
+    crasher.options = cdiff::planning::makePlannerOptions<CrasherOptions>;
+    crasher.make = [](const cdiff::planning::PlannerParts& parts) {
+      return std::make_unique<Crasher>(parts.options.of<CrasherOptions>());
+    };
+    return {crasher};
+  }
+  std::vector<cdiff::metrics::MetricDescriptor> metrics() const override {
+    return {
+        {"crashing_metric",
+         "Ends the program.",
+         {kCalls},
+         [](const cdiff::metrics::MetricContext&) { return std::make_unique<CrashingMetric>(); }}};
+  }
+};
+
+}  // namespace
+
+CLASS_LOADER_REGISTER_CLASS(CrashingPlugin, cdiff::plugins::Plugin)
