@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -17,6 +18,7 @@
 
 #include "core/file.h"
 #include "core/file_descriptor.h"
+#include "core/markup.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -30,15 +32,19 @@ namespace {
 constexpr int kPortAttempts = 5;
 constexpr std::chrono::milliseconds kListenPeriod{5};
 
-/// Inode of the socket that listens on `port` according to one of the kernel's tables; empty when
-/// there is none.
-std::string listeningInode(const char* table, int port) {
+/// States of a socket in the kernel's tables.
+constexpr const char* kEstablished = "01";
+constexpr const char* kListens = "0A";
+
+/// Inode of a socket of this state on the local `port` according to one of the kernel's tables;
+/// empty when there is none.
+std::string inodeOf(const char* table, int port, const char* state) {
   std::ifstream file(table);
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
     const std::vector<std::string> fields = core::splitText(line, ' ');
-    if (fields.size() < 10 || fields[3] != "0A") continue;
+    if (fields.size() < 10 || fields[3] != state) continue;
     const std::size_t colon = fields[1].rfind(':');
     if (std::strtol(fields[1].c_str() + colon + 1, nullptr, 16) == port) return fields[9];
   }
@@ -57,32 +63,42 @@ bool holdsSocket(int process_id, const std::string& inode) {
   return false;
 }
 
+constexpr std::streamoff kMostLogText = 1 << 14;  // [bytes] of a log that are read
+constexpr std::size_t kMostLetters = 500;         // of a line that is quoted
+
+/// The lines of SUMO's log in its first bytes, or in its last ones.
+std::vector<std::string> linesOf(const fs::path& path, bool at_end) {
+  if (!core::isFile(path)) return {};
+  std::ifstream file(path, std::ios::binary);
+  if (at_end) {
+    file.seekg(0, std::ios::end);
+    file.seekg(std::max<std::streamoff>(0, file.tellg() - kMostLogText));
+  }
+  std::string text(static_cast<std::size_t>(kMostLogText), '\0');
+  file.read(text.data(), kMostLogText);
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return core::splitText(text, '\n');
+}
+
 /// What follows `mark` on the first line that holds it, with the lines that continue it (indented,
 /// or after a semicolon); empty when no line does.
 std::string sentenceAfter(const std::string& mark, const fs::path& path) {
-  if (!core::isFile(path)) return "";
-  std::ifstream file(path);
-  std::string line;
-  while (std::getline(file, line)) {
+  std::string sentence;
+  for (const std::string& line : linesOf(path, false)) {
     const std::size_t at = line.find(mark);
-    if (at == std::string::npos) continue;
-    std::string sentence = line.substr(at + mark.size());
-    while (std::getline(file, line) && !line.empty() && line.front() == ' ') sentence += line;
-    return sentence;
+    if (!sentence.empty() && line.front() != ' ') break;
+    if (!sentence.empty()) sentence += line;
+    if (sentence.empty() && at != std::string::npos) sentence = line.substr(at + mark.size());
   }
-  return "";
+  return core::cutText(sentence, kMostLetters);
 }
 
 /// The last lines of a text file in one line; empty when there are none.
 std::string lastLines(const fs::path& path) {
   constexpr std::size_t kLines = 4;
-  if (!core::isFile(path)) return "";
-  std::ifstream file(path);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(file, line);) {
-    if (!line.empty()) lines.push_back(line);
-  }
+  std::vector<std::string> lines = linesOf(path, true);
   if (lines.size() > kLines) lines.erase(lines.begin(), lines.end() - kLines);
+  for (std::string& line : lines) line = core::cutText(line, kMostLetters);
   return core::joinText(lines, " | ");
 }
 
@@ -108,14 +124,17 @@ bool hasExecutedItsProgram(int process_id) {
   return !error && child != fs::read_symlink("/proc/self/exe", error);
 }
 
-bool listensOn(int process_id, int port) {
+/// Whether a process holds a socket of this state on a local TCP port.
+bool holdsSocketOn(int process_id, int port, const char* state) {
   if (!hasExecutedItsProgram(process_id)) return false;
   for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
-    const std::string inode = listeningInode(table, port);
+    const std::string inode = inodeOf(table, port, state);
     if (!inode.empty() && holdsSocket(process_id, inode)) return true;
   }
   return false;
 }
+
+bool listensOn(int process_id, int port) { return holdsSocketOn(process_id, port, kListens); }
 
 LogFolder::LogFolder(const fs::path& wanted) : path_(wanted) {
   if (wanted.empty()) {
@@ -131,11 +150,16 @@ LogFolder::LogFolder(const fs::path& wanted) : path_(wanted) {
 
 SumoProcess::SumoProcess(const SumoCommand& command) : logs_(command.log_folder) {
   const fs::path program = core::findProgram(command.binary, "sumo");
+  Start start = Start::kPortTaken;
   for (int attempt = 0; attempt < kPortAttempts; ++attempt) {
-    if (tryStart(command, program) == Start::kListening) return;
+    start = tryStart(command, program);
+    if (start == Start::kListening) return;
   }
-  throw core::SimulatorError("SUMO found no free port in " + std::to_string(kPortAttempts) +
-                             " attempts, the last one was " + std::to_string(port_));
+  const std::string tried =
+      std::to_string(kPortAttempts) + " attempts, the last one on port " + std::to_string(port_);
+  throw core::SimulatorError(start == Start::kPortTaken
+                                 ? "SUMO found no free port in " + tried
+                                 : "another program connected to SUMO before this one in " + tried);
 }
 
 SumoProcess::~SumoProcess() = default;
@@ -161,6 +185,7 @@ SumoProcess::Start SumoProcess::tryStart(const SumoCommand& command, const fs::p
       if (const std::string reason = refusal(); !reason.empty()) throw SumoRefusal(reason);
       throw core::SimulatorError("SUMO did not start (" + process_->endText() + "): " + words);
     }
+    if (holdsSocketOn(process_->id(), port_, kEstablished)) return Start::kOtherClient;
     if (std::chrono::steady_clock::now() > limit) {
       throw core::SimulatorError("SUMO did not listen within " +
                                  core::formatNumber(command.start_timeout) + " s");

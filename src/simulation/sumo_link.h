@@ -77,7 +77,7 @@ class SumoProcess {
   std::string refusal() const;
 
  private:
-  enum class Start { kListening, kPortTaken };
+  enum class Start { kListening, kPortTaken, kOtherClient };
   Start tryStart(const SumoCommand& command, const std::filesystem::path& program);
 
   LogFolder logs_;
