@@ -141,6 +141,15 @@ TEST_F(NetworkImport, ConvertsOpenDrive) {
   EXPECT_EQ(fs::last_write_time(network.file), written);
 }
 
+// netconvert splits names at commas, and puts variables of the environment into them.
+TEST_F(NetworkImport, ConvertsAFileWhateverItsName) {
+  for (const std::string name : {"a,b.xodr", "${HOME}.xodr"}) {
+    const std::string content = std::string(kStraightRoad) + "<!-- " + name + " -->";
+    const ImportedNetwork network = importNetwork(write(name, content));
+    EXPECT_EQ(RoadNetwork::fromText(network.text, name).lanes().size(), 1u);
+  }
+}
+
 /// Changes that a cache may suffer; each gets the file of a converted network.
 const std::vector<std::function<void(const fs::path&)>> kDamages = {
     [](const fs::path& file) { core::writeFileAtomically(file, ""); },

@@ -39,6 +39,16 @@ std::string withoutGeneratedComment(std::string text) {
   return text;
 }
 
+/// The file under a name that netconvert takes as it is: it splits names at commas and replaces
+/// ${NAME} by a variable of the environment.
+fs::path plainlyNamed(const fs::path& source, const core::ScratchFolder& scratch) {
+  const std::string name = source.string();
+  if (name.find(',') == std::string::npos && name.find("${") == std::string::npos) return source;
+  const fs::path plain = scratch.path() / "source";
+  fs::create_symlink(fs::absolute(source), plain);
+  return plain;
+}
+
 /// Text of the SUMO network that netconvert makes of `source`; `format` is its option for the
 /// source, `types` the file of the type map that goes with it.
 std::string convert(const fs::path& source, const std::string& format, const std::string& types,
@@ -47,7 +57,7 @@ std::string convert(const fs::path& source, const std::string& format, const std
   const fs::path converted = scratch.path() / "converted.net.xml";
   const fs::path type_map = core::shareFolder() / "sumo" / "data" / "typemap" / types;
   std::vector<std::string> arguments = {format,
-                                        source.string(),
+                                        plainlyNamed(source, scratch).string(),
                                         "--type-files",
                                         type_map.string(),
                                         "--output-file",
