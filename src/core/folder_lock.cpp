@@ -16,6 +16,7 @@
 
 #include "core/clock.h"
 #include "core/folder_access.h"
+#include "core/markup.h"
 #include "core/text.h"
 
 namespace cdiff::core {
@@ -46,7 +47,9 @@ std::map<std::string, std::string> contentOf(int descriptor) {
 }
 
 std::string holderText(int descriptor) {
+  constexpr std::size_t kMostLetters = 80;
   auto content = contentOf(descriptor);
+  for (auto& [key, value] : content) value = cutText(value, kMostLetters);
   return "'" + content["program"] + "', process " + content["process"] + " on host " +
          content["host"] + ", since " + content["since"];
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/markup.h"
 #include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/html_report.h"
@@ -25,6 +26,14 @@ namespace fs = std::filesystem;
 /// usual.
 constexpr std::size_t kSummaryRoom = 1 << 16;
 constexpr std::size_t kJunitRoom = 1 << 14;
+
+/// A fault may hold what others say: safe to show, and not too long.
+traffic::Fault shown(const traffic::Fault& fault) {
+  constexpr std::size_t kMostSource = 100;  // [letters]
+  constexpr std::size_t kMostText = 1000;
+  return {fault.tick, core::cutText(fault.source, kMostSource),
+          core::cutText(fault.text, kMostText)};
+}
 
 }  // namespace
 
@@ -51,7 +60,7 @@ class ResultWriter::Record {
   void observe(const session::TickRecord& record) {
     const traffic::TrafficSnapshot& snapshot = *record.snapshot;
     result_.status = snapshot.status;
-    result_.faults.insert(result_.faults.end(), snapshot.faults.begin(), snapshot.faults.end());
+    for (const traffic::Fault& fault : snapshot.faults) result_.faults.push_back(shown(fault));
     latencies_.observe(record.latencies);
     late_.observe(record.timings);
     if (last_tick_ && snapshot.tick <= *last_tick_)

@@ -146,6 +146,15 @@ TEST_F(OutputFolderTest, ALockOfAnotherHostSaysWhatToDelete) {
   EXPECT_TRUE(fs::exists(lockFile()));
 }
 
+TEST_F(OutputFolderTest, AForeignLockIsQuotedSafely) {
+  fs::create_directories(folder());
+  std::ofstream(lockFile()) << "host: far\033[31m" << std::string(300, 'x')
+                            << "\nprocess: 12\nprogram: cdiff run\nsince: then\n";
+  const std::string error = lockError(folder());
+  EXPECT_NE(error.find("on host far\xEF\xBF\xBD[31mx"), std::string::npos) << error;
+  EXPECT_EQ(error.find(std::string(100, 'x')), std::string::npos) << error;
+}
+
 TEST_F(OutputFolderTest, ScratchFoldersOfKilledProcessesAreRemovedAndOthersStay) {
   ::setenv("TMPDIR", scratch_.path().c_str(), 1);
   const auto makeScratch = [] { new ScratchFolder(); };  // not removed by the child

@@ -71,6 +71,16 @@ TEST(ResultWriter, SummaryReportAndTableNameTheMethod) {
   expectMethod(options, "custom", "custom (default but for guidance.speed.weight)");
 }
 
+TEST(ResultWriter, WhatOthersSayIsCutAndSafeToShow) {
+  const test::TemporaryFolder scratch;
+  runSample(scratch, SessionStatus::kError, test::sampleOptions(),
+            {{3, "my\033[31mego", "\007" + std::string(100000, 'x')}});
+  const Json fault = summaryOf(scratch)["faults"].back();
+  EXPECT_EQ(fault["source"], "my\xEF\xBF\xBD[31mego");
+  EXPECT_EQ(fault["text"].get<std::string>().rfind("\xEF\xBF\xBDx", 0), 0U);
+  EXPECT_LT(fault["text"].get<std::string>().size(), 1100U);
+}
+
 TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);
