@@ -22,8 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "ffmpeg";
-constexpr timeval kLongestPause{30, 0};  // for which the program may read nothing [s]
-constexpr double kLongestEnd = 60.0;     // [s]
+constexpr double kLongestEnd = 60.0;  // [s]
 
 std::vector<std::string> commandLine(const VideoFormat& format, const fs::path& file) {
   const std::string size = std::to_string(format.width) + "x" + std::to_string(format.height);
@@ -59,8 +58,11 @@ std::string lastWords(const core::ProcessOutput& output) {
 
 }  // namespace
 
-VideoEncoder::VideoEncoder(const fs::path& file, const VideoFormat& format)
-    : folder_(fs::absolute(file).parent_path()), name_(file.filename().string()), file_(file) {
+VideoEncoder::VideoEncoder(const fs::path& file, const VideoFormat& format, int longest_pause)
+    : folder_(fs::absolute(file).parent_path()),
+      name_(file.filename().string()),
+      file_(file),
+      longest_pause_(longest_pause) {
   try {
     core::OutputFolder::requireFree(folder_.path(), {name_});
     folder_.remove({name_});
@@ -82,7 +84,8 @@ void VideoEncoder::start(const VideoFormat& format) {
   }
   input_ = core::FileDescriptor(ends[0]);
   const core::FileDescriptor output(ends[1]);
-  ::setsockopt(input_.get(), SOL_SOCKET, SO_SNDTIMEO, &kLongestPause, sizeof(kLongestPause));
+  const timeval pause{longest_pause_, 0};
+  ::setsockopt(input_.get(), SOL_SOCKET, SO_SNDTIMEO, &pause, sizeof(pause));
   process_ = std::make_unique<core::GuardedProcess>(
       program, commandLine(format, folder_.claim(partName())),
       core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
@@ -96,8 +99,11 @@ void VideoEncoder::write(const std::vector<std::uint8_t>& frame) {
         ::send(input_.get(), frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
     if (count > 0) {
       sent += static_cast<std::size_t>(count);
+    } else if (errno == EAGAIN) {
+      process_->kill();
+      fail("it took nothing for " + std::to_string(longest_pause_) + " s");
     } else if (errno != EINTR) {
-      fail(errno == EAGAIN ? "it took nothing for 30 s" : "it ended before the session");
+      fail("it ended before the session");
     }
   }
 }

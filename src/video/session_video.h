@@ -30,16 +30,18 @@ struct VideoFormat {
 class VideoEncoder {
  public:
   /// Removes an earlier video of this name, starts the program and has it write to a temporary file
-  /// beside. Throws InputError when the program is not there or `file` is there and not ours,
-  /// SimulatorError when no process can be made.
-  VideoEncoder(const std::filesystem::path& file, const VideoFormat& format);
+  /// beside. `longest_pause` is how long it may read nothing [s of wall time]. Throws InputError
+  /// when the program is not there or `file` is there and not ours, SimulatorError when no process
+  /// can be made.
+  VideoEncoder(const std::filesystem::path& file, const VideoFormat& format,
+               int longest_pause = 30);
   /// Ends the program and removes the temporary file when `finish` was not called.
   ~VideoEncoder();
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
 
   /// `frame` holds height x width x 3 bytes. Throws SimulatorError with the program's own words
-  /// when it ended or took nothing for 30 s.
+  /// when it ended, or took nothing for the longest pause, after which it is killed.
   void write(const std::vector<std::uint8_t>& frame);
   /// Waits for the program and gives the file its name. Throws SimulatorError as `write` does, e.g.
   /// when the disk is full. Call once.
@@ -57,6 +59,7 @@ class VideoEncoder {
   core::OutputFolder folder_;
   std::string name_;
   std::filesystem::path file_;
+  int longest_pause_;  ///< [s]
   std::unique_ptr<core::GuardedProcess> process_;
   core::FileDescriptor input_;    ///< our end of the socket
   core::ProcessOutput messages_;  ///< error output of the program

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -300,6 +301,23 @@ TEST(SessionVideo, AnEncoderThatFailsIsQuoted) {
     EXPECT_NE(error.find("No space left on device"), std::string::npos) << error;
     expectWholeResult(scratch.path());
   }
+}
+
+TEST(VideoEncoder, AProgramThatReadsNothingIsEnded) {
+  const test::TemporaryFolder tools;
+  const test::TemporaryFolder scratch;
+  const SearchPath path(fakeEncoder(tools.path(), "exec sleep 50"));
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    VideoEncoder encoder(scratch.path() / "a.mp4", {1280, 720, 10}, 1);
+    const std::vector<std::uint8_t> frame(3 * 1280 * 720, 128);
+    while (true) encoder.write(frame);
+  } catch (const core::SimulatorError& error) {
+    EXPECT_NE(std::string(error.what()).find("it took nothing for 1 s"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(40));
+  EXPECT_TRUE(fs::is_empty(scratch.path()));
 }
 
 TEST(VideoEncoder, AVideoThatIsNotOursStays) {
