@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
 #include "node_graph/bags/bag_reader.h"
+#include "node_graph/bags/bag_records.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/recorded_bag.h"
 #include "record/result_folder.h"
@@ -277,6 +278,16 @@ TEST_F(DamagedBags, ASessionThatNeverEndedIsInterrupted) {
   EXPECT_EQ(record::readTrace(results() / "trace.csv").back().tick, 99U);
 }
 
+TEST_F(DamagedBags, AVehicleWithControlCharactersInItsIdLosesItsTick) {
+  const Outcome outcome = replayWith([](msgs& snapshot) {
+    if (snapshot.tick == 50) snapshot.vehicles.back().id = "\033[2J";
+    return true;
+  });
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(says(outcome, "the snapshot of tick 50 cannot be used")) << outcome.text;
+  EXPECT_EQ(core::readFile(results() / "trace.csv", "trace").find('\033'), std::string::npos);
+}
+
 TEST_F(DamagedBags, ASecondSessionIsNotMixedIn) {
   const Outcome outcome = replayEdited([](const auto& message, rosbag::Bag& to) {
     test::keep(message, to);
@@ -334,6 +345,19 @@ TEST_F(DamagedBags, ABagThatWasNeverClosedIsReadToItsLastChunk) {
   EXPECT_EQ(outcome.text, "its recording was cut off: it has no index\n");
   EXPECT_EQ(outcome.summary["status"], "timed_out");
   EXPECT_EQ(outcome.ticks, kLastTick + 1);
+}
+
+TEST_F(DamagedBags, AChunkIsReadToTheSizeThatItsHeaderSays) {
+  const auto [begin, length] = chunksOf(bytes_)[1];
+  const std::uint32_t said = 1000;
+  const ChunkText text = decompressChunk("lz4", bytes_.substr(begin, length), said);
+  EXPECT_EQ(text.bytes.size(), said);
+  std::string bytes = bytes_;
+  std::memcpy(&bytes[begin - 8], &said, sizeof(said));
+  const Outcome outcome = replayText(bytes);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(says(outcome, "it goes on after 1000 bytes, which its header says it holds"))
+      << outcome.text;
 }
 
 TEST_F(DamagedBags, OverwrittenBytesLoseTheirChunkAlone) {

@@ -108,7 +108,7 @@ std::string_view textIn(const BagFields& fields, std::string_view name) {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20;             // [bytes]
-constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 31;  // [bytes] of a chunk
+constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 29;  // [bytes]; usual are some 10^6
 constexpr const char* kCut = "it ends before its last byte";
 
 /// A fault that leaves nothing of the chunk.
@@ -118,7 +118,7 @@ struct FreeLz4 {
   void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
 };
 
-ChunkText decompressLz4(std::string_view data) {
+ChunkText decompressLz4(std::string_view data, std::uint64_t most) {
   LZ4F_dctx* made = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION)))
     return refused("there is no memory to decompress it");
@@ -126,7 +126,7 @@ ChunkText decompressLz4(std::string_view data) {
   std::vector<char> piece(kPiece);
   ChunkText text;
   std::size_t wanted = 1;
-  while (wanted != 0 && text.bytes.size() <= kLargestChunk) {
+  while (wanted != 0 && text.bytes.size() <= most) {
     std::size_t taken = data.size();
     std::size_t given = piece.size();
     wanted = LZ4F_decompress(context.get(), piece.data(), &given, data.data(), &taken, nullptr);
@@ -145,7 +145,7 @@ struct EndBz2 {
   void operator()(bz_stream* stream) const { BZ2_bzDecompressEnd(stream); }
 };
 
-ChunkText decompressBz2(std::string_view data) {
+ChunkText decompressBz2(std::string_view data, std::uint64_t most) {
   bz_stream stream{};
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK)
     return refused("there is no memory to decompress it");
@@ -154,7 +154,7 @@ ChunkText decompressBz2(std::string_view data) {
   stream.next_in = const_cast<char*>(data.data());  // the library does not write there
   stream.avail_in = static_cast<unsigned int>(data.size());
   ChunkText text;
-  while (text.bytes.size() <= kLargestChunk) {
+  while (text.bytes.size() <= most) {
     stream.next_out = piece.data();
     stream.avail_out = static_cast<unsigned int>(piece.size());
     const int state = BZ2_bzDecompress(&stream);
@@ -184,8 +184,13 @@ ChunkText decompressChunk(std::string_view compression, std::string_view data, s
   if (compression != "lz4" && compression != "bz2")
     return refused("it has the unknown compression '" + std::string(compression.substr(0, 20)) +
                    "'");
-  ChunkText text = compression == "lz4" ? decompressLz4(data) : decompressBz2(data);
-  return text.bytes.size() > kLargestChunk ? refused("it holds more than 2 GiB") : text;
+  const std::uint64_t most = size == 0 ? kLargestChunk : std::min(size, kLargestChunk);
+  ChunkText text = compression == "lz4" ? decompressLz4(data, most) : decompressBz2(data, most);
+  if (text.bytes.size() <= most) return text;
+  text.bytes.resize(most);
+  text.fault = "it goes on after " + std::to_string(most) + " bytes, " +
+               (most == size ? "which its header says it holds" : "more than which is not read");
+  return text;
 }
 
 }  // namespace cdiff::node_graph

@@ -66,10 +66,10 @@ struct ChunkText {
   std::string fault;  ///< why the chunk is not whole; empty when it is
 };
 
-/// `size` is what the chunk's header says it holds, 0 when its recording was cut off; compressed
-/// data know it themselves. Data that end early give the whole blocks before the end (rosbag writes
-/// a chunk as one lz4 block), wrong data (checksum, format) nothing; what lies behind their end
-/// does not matter.
+/// `size` is what the chunk's header says it holds, 0 when its recording was cut off: no more than
+/// that is decompressed, and at most 512 MiB. Data that end early give the whole blocks before the
+/// end (rosbag writes a chunk as one lz4 block), wrong data (checksum, format) nothing; what lies
+/// behind their end does not matter.
 ChunkText decompressChunk(std::string_view compression, std::string_view data, std::uint64_t size);
 
 }  // namespace cdiff::node_graph

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/markup.h"
 #include "core/text.h"
 
 namespace cdiff::node_graph {
@@ -39,6 +40,7 @@ std::string wrongVehicles(const std::vector<msgs::Vehicle>& vehicles) {
     if (vehicle.role > msgs::Vehicle::BACKGROUND)
       return name + " has the unknown role " + std::to_string(vehicle.role);
     if (!plausible(vehicle)) return name + " has a state or size that no vehicle can have";
+    if (core::plainText(vehicle.id) != vehicle.id) return name + " has an id that is no plain text";
     if (!ids.insert(vehicle.id).second) return name + " is there twice";
     if (vehicle.role != msgs::Vehicle::EGO) continue;
     if (ego != nullptr) return "it has two egos, '" + ego->id + "' and '" + vehicle.id + "'";
