@@ -41,6 +41,15 @@ TEST_F(Messages, AnUnknownCommandIsNamed) {
   EXPECT_EQ(output().find("collect_session"), std::string::npos) << output();  // for collect alone
 }
 
+// Address space and data: a program that is loaded all the same waits for ever.
+TEST_F(Messages, ALimitThatLeavesNoMemoryIsNamed) {
+  for (const std::string limit : {"-v 400000", "-d 60000"}) {
+    const std::string command = "ulimit " + limit + "; exec timeout 60 " CDIFF_PROGRAM " --version";
+    EXPECT_EQ(run("/bin/bash", {"-c", command}), 2) << limit;
+    expectOutput("raise ulimit -v");
+  }
+}
+
 TEST_F(Messages, AnUnknownOptionIsNamedWithTheNearest) {
   EXPECT_EQ(cdiff({"run", "roundabout_cross", "--sed", "3"}), 3);
   expectOutput(
