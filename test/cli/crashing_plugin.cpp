@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A plug-in for the tests that ends or stops the program: its planner as the key crasher.end says,
+/// A plug-in for the tests that ends or stops the program: its planner as the key quitter.end says,
 /// its metric where the variable CRASHING_METRIC is set. Both drive and measure for a while before.
 #include <class_loader/class_loader.hpp>
 #include <csignal>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCallsBefore = 5;
 
-struct CrasherOptions {
+struct QuitterOptions {
   std::string end = "none";
 
   void describe(cdiff::core::OptionsVisitor& visitor) {
@@ -32,9 +32,9 @@ void endProgram(const std::string& how) {
   }
 }
 
-class Crasher : public cdiff::planning::Planner {
+class Quitter : public cdiff::planning::Planner {
  public:
-  explicit Crasher(const CrasherOptions& options) : options_(options) {
+  explicit Quitter(const QuitterOptions& options) : options_(options) {
     if (options_.end == "constructor_fault") std::raise(SIGSEGV);
     if (options_.end == "constructor_number") throw 5;
   }
@@ -50,7 +50,7 @@ class Crasher : public cdiff::planning::Planner {
   }
 
  private:
-  CrasherOptions options_;
+  QuitterOptions options_;
   int calls_ = 0;
 };
 
@@ -82,15 +82,15 @@ class CrashingMetric : public cdiff::metrics::Metric {
 class CrashingPlugin : public cdiff::plugins::Plugin {
  public:
   std::vector<cdiff::planning::PlannerDescriptor> planners() const override {
-    cdiff::planning::PlannerDescriptor crasher;
-    crasher.name = "crasher";
-    crasher.title = "Crasher";
-    crasher.help = "ends the program.";
-    crasher.options = cdiff::planning::makePlannerOptions<CrasherOptions>;
-    crasher.make = [](const cdiff::planning::PlannerParts& parts) {
-      return std::make_unique<Crasher>(parts.options.of<CrasherOptions>());
+    cdiff::planning::PlannerDescriptor quitter;
+    quitter.name = "quitter";
+    quitter.title = "Quitter";
+    quitter.help = "ends the program.";
+    quitter.options = cdiff::planning::makePlannerOptions<QuitterOptions>;
+    quitter.make = [](const cdiff::planning::PlannerParts& parts) {
+      return std::make_unique<Quitter>(parts.options.of<QuitterOptions>());
     };
-    return {crasher};
+    return {quitter};
   }
   std::vector<cdiff::metrics::MetricDescriptor> metrics() const override {
     return {

@@ -26,11 +26,11 @@ class CrashingPlugins : public test::CdiffCommand {
   std::vector<std::string> session(const std::string& end) const {
     return {"run",           "crossing_straight",
             "--results",     results(),
-            "--ego-planner", "crasher",
+            "--ego-planner", "quitter",
             "--cbv-planner", "pdm_lite",
             "--set",         "protocol.time_limit=2",
             "--set",         "verdict.judge=false",
-            "--set",         "crasher.end=" + end};
+            "--set",         "quitter.end=" + end};
   }
   std::string results() const { return path("results"); }
   nlohmann::json summary() const {
@@ -76,19 +76,19 @@ TEST_F(CrashingPlugins, APlannerThatEndsTheProgramIsNamedByTheResult) {
   for (const auto& [end, text] : ends) {
     fs::remove_all(results());
     EXPECT_EQ(cdiff(session(end)), 2) << output();
-    expectResult("error", "planner 'crasher'");
+    expectResult("error", "planner 'quitter'");
     expectFault(text);
   }
 }
 
 TEST_F(CrashingPlugins, APlannerThatCrashesInItsConstructorIsNamedByTheResult) {
   EXPECT_EQ(cdiff(session("constructor_fault")), 2) << output();
-  expectResult("error", "planner 'crasher'", false);
+  expectResult("error", "planner 'quitter'", false);
 }
 
 TEST_F(CrashingPlugins, APlannerThatThrowsANumberInItsConstructorIsBadInput) {
   EXPECT_EQ(cdiff(session("constructor_number")), 3) << output();
-  expectOutput("planner 'crasher' of plug-in '");
+  expectOutput("planner 'quitter' of plug-in '");
   EXPECT_FALSE(fs::exists(results()));
 }
 
@@ -96,7 +96,7 @@ TEST_F(CrashingPlugins, APlannerWithoutAnAnswerIsEnded) {
   std::vector<std::string> command = session("endless");
   command.insert(command.end(), {"--answer-timeout", "1"});
   EXPECT_EQ(cdiff(command), 2) << output();
-  expectResult("error", "planner 'crasher'");
+  expectResult("error", "planner 'quitter'");
   expectFault("no answer for ");
 }
 
@@ -111,7 +111,7 @@ TEST_F(CrashingPlugins, ASecondSignalEndsAPlannerWithoutAnAnswer) {
     run.signal(SIGINT);
   }
   EXPECT_EQ(run.wait(), 130) << output();
-  expectResult("interrupted", "planner 'crasher'");
+  expectResult("interrupted", "planner 'quitter'");
 }
 
 TEST_F(CrashingPlugins, AMetricThatEndsTheProgramIsNamedAndLeftOut) {
