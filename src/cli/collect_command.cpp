@@ -16,6 +16,7 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/samples/scene_file.h"
 #include "node_graph/bags/dataset_from_bag.h"
 #include "suite/seal.h"
 #include "suite/suite.h"
@@ -155,14 +156,26 @@ int convertBags(const CollectArguments& arguments) {
   return ExitCode::kPassed;
 }
 
+/// Whether a scene is there and whole; a damaged one is named.
+bool hasScene(const fs::path& file) {
+  if (!fs::exists(file)) return false;
+  try {
+    learning::readScene(file);
+    return true;
+  } catch (const core::InputError& error) {
+    std::cerr << "cdiff: " << error.what() << "; its session is driven again\n";
+    return false;
+  }
+}
+
 /// Whether every file that the request asks for exists; a session of which only a bag is asked is
 /// always driven again.
 bool isDone(const CollectRequest& request, const std::string& name) {
   if (!request.images && !request.scenes) return false;
   const bool samples = fs::exists(collection::shardFile(request, name)) &&
                        fs::exists(collection::statisticsFile(request, name));
-  const bool scene = fs::exists(collection::sceneFile(request, name));
-  return (samples || !request.images) && (scene || !request.scenes);
+  const bool scene = !request.scenes || hasScene(collection::sceneFile(request, name));
+  return (samples || !request.images) && scene;
 }
 
 std::vector<SessionJob> jobsOf(const std::vector<CollectRequest>& sessions) {

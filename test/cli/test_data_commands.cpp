@@ -174,6 +174,10 @@ TEST_F(DataCommands, ScenesAreCollectedOnceAndTrainedOn) {
   EXPECT_EQ(cdiff({"train", "--task", "plant", "--data", path("data"), "--output", path("other")}),
             3);
   expectOutput("scene '" + scene.string() + "': truncated");
+  EXPECT_EQ(collect({"--no-images"}), 0);
+  expectOutput("scene '" + scene.string() + "': truncated");
+  expectOutput("1 sessions, 0 of them already there");
+  EXPECT_EQ(core::readFile(scene, "scene"), bytes);
 }
 
 TEST_F(DataCommands, CurvesAreDrawnOrTheirFaultIsNamed) {
