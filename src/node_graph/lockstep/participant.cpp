@@ -30,7 +30,9 @@ constexpr double kFirstHeartbeat = 30.0;  // [s] for a simulator of the same lau
 
 void spin() { ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kPeriod)); }
 
-double secondsSince(const ros::WallTime& begin) { return (ros::WallTime::now() - begin).toSec(); }
+double secondsSince(const ros::SteadyTime& begin) {
+  return (ros::SteadyTime::now() - begin).toSec();
+}
 
 }  // namespace
 
@@ -110,7 +112,7 @@ std::optional<Ending> Participant::unstartedEnding() {
   const bool overdue = !heartbeat_.everHeard() && secondsSince(began_) > kFirstHeartbeat;
   if (overdue && launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorSilent;
   if (!stop_.raised()) return std::nullopt;
-  if (stopped_at_.isZero()) stopped_at_ = ros::WallTime::now();
+  if (stopped_at_.isZero()) stopped_at_ = ros::SteadyTime::now();
   // The simulator was stopped too and writes a result, or its death is why roslaunch stops us.
   if (!launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorGone;
   if (secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
@@ -155,7 +157,7 @@ std::optional<Ending> Participant::unexpectedEnding() {
   if (!ros::ok()) return Ending::kStopped;
   if (simulatorGone()) return Ending::kSimulatorGone;
   if (simulatorSilent()) return Ending::kSimulatorSilent;
-  if (stop_.raised() && stopped_at_.isZero()) stopped_at_ = ros::WallTime::now();
+  if (stop_.raised() && stopped_at_.isZero()) stopped_at_ = ros::SteadyTime::now();
   if (!stopped_at_.isZero() && secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
   return std::nullopt;
 }
@@ -203,15 +205,15 @@ int Participant::leave(Ending ending) {
   if (!isObserver(name_) || !ros::ok()) return exit_code;
   publishAck(msgs::TickAck::FINISHED, lastTick());
   // The simulator leaves once it knows; until then the message may still be on its way.
-  const ros::WallTime limit = ros::WallTime::now() + ros::WallDuration(kFarewell);
-  while (!simulatorGone() && ros::WallTime::now() < limit) spin();
+  const ros::SteadyTime limit = ros::SteadyTime::now() + ros::WallDuration(kFarewell);
+  while (!simulatorGone() && ros::SteadyTime::now() < limit) spin();
   return exit_code;
 }
 
 /// So that it does not go on one day, and so that roslaunch ends. The metrics node ends it, once it
 /// has written the result; the others only where the metrics node does not.
 void Participant::endSilentSimulator() {
-  const ros::WallTime begin = ros::WallTime::now();
+  const ros::SteadyTime begin = ros::SteadyTime::now();
   while (name_ != kMetricsNode && ros::ok() && !simulatorGone() && secondsSince(begin) < kFarewell)
     spin();
   if (!simulatorGone() && killLaunchedProcess(kTrafficSimulatorNode))
@@ -220,8 +222,8 @@ void Participant::endSilentSimulator() {
 
 int Participant::fail(const std::string& text) {
   ROS_ERROR("%s: %s", name_.c_str(), text.c_str());
-  const ros::WallTime limit = ros::WallTime::now() + ros::WallDuration(kFarewell);
-  while (ros::ok() && !simulatorGone() && ros::WallTime::now() < limit) {
+  const ros::SteadyTime limit = ros::SteadyTime::now() + ros::WallDuration(kFarewell);
+  while (ros::ok() && !simulatorGone() && ros::SteadyTime::now() < limit) {
     publishAck(msgs::TickAck::ERROR, lastTick(), text);
     spin();
     const bool ended =
@@ -243,7 +245,7 @@ void Participant::publishAck(std::uint8_t kind, std::uint64_t tick, const std::s
 void Participant::report() {
   const bool begun = next_tick_ > 0;
   if (secondsSince(reported_at_) < (begun ? kAlivePeriod : kPeriod)) return;
-  reported_at_ = ros::WallTime::now();
+  reported_at_ = ros::SteadyTime::now();
   if (begun) return publishAck(msgs::TickAck::ALIVE, lastTick());
   const std::string text = missing();
   publishAck(text.empty() ? msgs::TickAck::READY : msgs::TickAck::WAITING, 0, text);
@@ -284,7 +286,7 @@ bool Observer::complete(const msgs::TrafficSnapshot& snapshot, bool superseded) 
     return true;
   }
   if (!superseded || !answers_.decision(snapshot.tick)) return false;
-  const ros::WallTime now = ros::WallTime::now();
+  const ros::SteadyTime now = ros::SteadyTime::now();
   if (waiting_since_.isZero()) waiting_since_ = now;
   if ((now - waiting_since_).toSec() < kPatience) return false;
   waiting_since_ = {};

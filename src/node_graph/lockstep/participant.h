@@ -139,9 +139,9 @@ class Participant {
   std::uint64_t next_tick_ = 0;    ///< snapshots before it were seen
   double simulation_step_ = 0.05;  ///< [s]
   std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
-  ros::WallTime began_ = ros::WallTime::now();
-  ros::WallTime stopped_at_;   ///< when the stop signal was seen
-  ros::WallTime reported_at_;  ///< when this node last said how it stands
+  ros::SteadyTime began_ = ros::SteadyTime::now();
+  ros::SteadyTime stopped_at_;   ///< when the stop signal was seen
+  ros::SteadyTime reported_at_;  ///< when this node last said how it stands
   bool final_handled_ = false;
   bool over_ = false;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
@@ -166,7 +166,7 @@ class Observer : public Participant {
 
  private:
   TickAnswers answers_;
-  ros::WallTime waiting_since_;  ///< for what a decision's record names; zero when not
+  ros::SteadyTime waiting_since_;  ///< for what a decision's record names; zero when not
 };
 
 }  // namespace cdiff::node_graph

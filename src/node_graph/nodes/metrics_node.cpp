@@ -40,10 +40,10 @@ void endStoppedSimulator() {
 std::string bagRow(const SessionGraph& graph, const std::filesystem::path& results) {
   constexpr double kPatience = 2.0;  // [s] of wall time
   const std::filesystem::path bag = results / "session.bag";
-  const ros::WallTime begin = ros::WallTime::now();
+  const ros::SteadyTime begin = ros::SteadyTime::now();
   std::string row = record::fileRow("bag", bag);
   while (row.empty() && graph.has(kRecorderNode) &&
-         (ros::WallTime::now() - begin).toSec() < kPatience) {
+         (ros::SteadyTime::now() - begin).toSec() < kPatience) {
     ros::WallDuration(0.02).sleep();
     row = record::fileRow("bag", bag);
   }

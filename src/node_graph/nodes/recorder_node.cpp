@@ -40,8 +40,9 @@ bool RecorderNode::measured(const msgs::TrafficSnapshot& snapshot, bool supersed
   if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) ||
       answers().has(ChannelId::kMetrics, snapshot.tick))
     return true;
-  if (waiting_since_.isZero()) waiting_since_ = ros::WallTime::now();
-  return (final || superseded) && (ros::WallTime::now() - waiting_since_).toSec() > kReportPatience;
+  if (waiting_since_.isZero()) waiting_since_ = ros::SteadyTime::now();
+  return (final || superseded) &&
+         (ros::SteadyTime::now() - waiting_since_).toSec() > kReportPatience;
 }
 
 bool RecorderNode::handle(const Snapshot& snapshot, bool superseded) {

@@ -32,7 +32,7 @@ class RecorderNode : public Observer {
   bool has_route_ = false;
   std::optional<std::uint64_t> acknowledged_;  ///< last tick
   std::uint64_t written_ = 0;                  ///< ticks
-  ros::WallTime waiting_since_;
+  ros::SteadyTime waiting_since_;
 };
 
 }  // namespace cdiff::node_graph
