@@ -218,6 +218,34 @@ TEST_F(SessionFaults, UnknownLaunchArgumentIsRefusedOnceAndLeavesNoResult) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
+TEST_F(SessionFaults, PluginsOfANodeThatCrashesAreNamed) {
+  const std::string launch = "E2E_CDIFF_PLUGINS=" CRASHING_PLUGIN " exec roslaunch -p " +
+                             std::to_string(session_.port()) +
+                             " e2e_cdiff session.launch scenario:=crossing_straight "
+                             "cbv_planner:=pdm_lite results:=" +
+                             session_.results().string();
+  session_.start(launch + " ego_planner:=quitter set:=quitter.end=segmentation_fault");
+  EXPECT_LT(session_.endAfter(40.0), 40.0);
+  expectError("ego_planner_node");
+  EXPECT_NE(session_.fault().find("it calls planner 'quitter' of plug-in '" CRASHING_PLUGIN),
+            std::string::npos)
+      << session_.fault();
+}
+
+TEST_F(SessionFaults, ACrashingMetricIsNamedAndLeftOut) {
+  session_.start("export CRASHING_METRIC=yes E2E_CDIFF_PLUGINS=" CRASHING_PLUGIN
+                 "; exec roslaunch -p " +
+                 std::to_string(session_.port()) +
+                 " e2e_cdiff session.launch scenario:=crossing_straight cbv_planner:=pdm_lite "
+                 "results:=" +
+                 session_.results().string());
+  EXPECT_LT(session_.endAfter(40.0), 40.0);
+  expectError("metrics_node");
+  EXPECT_NE(session_.fault().find("it calls metric 'crashing_metric'"), std::string::npos)
+      << session_.fault();
+  EXPECT_TRUE(session_.summary()["metrics"]["crashing_calls"]["value"].is_null());
+}
+
 // roslaunch itself would run the session without such an argument.
 TEST_F(SessionFaults, LaunchArgumentWithALineBreakIsRefused) {
   session_.launch(R"(set:=$'protocol.time_limit=1\nmax_cbv=1')");

@@ -2,15 +2,19 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/nodes/traffic_simulator_node.h"
 
+#include "core/markup.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "metrics/metric_registry.h"
 #include "node_graph/lockstep/lockstep_pacer.h"
 #include "node_graph/lockstep/wall_clock_pacer.h"
 #include "node_graph/messages/message_checks.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_graph.h"
+#include "planners/planner_by_slot.h"
+#include "planners/registry.h"
 #include "rosgraph_msgs/Clock.h"
 
 namespace cdiff::node_graph {
@@ -30,6 +34,36 @@ std::vector<std::string> knownParameters() {
 
 /// In a namespace a session is one of several on a master, whose clocks would contradict.
 bool ownsClock() { return ros::this_node::getNamespace() == "/"; }
+
+bool isPlugin(const std::string& source) { return source.rfind("plug-in ", 0) == 0; }
+
+/// What of plug-ins a node calls, as the end of a sentence about its end; empty where nothing.
+std::string pluginsOf(const std::string& node, const session::ScenarioOptions& options) {
+  std::string text;
+  const bool of_cbvs = node == kCbvPlannerNode || node == kDiffusionPlannerNode;
+  const std::string planners = node == kEgoPlannerNode ? options.ego_planner
+                               : of_cbvs               ? options.cbv_planner
+                                                       : "";
+  for (const std::string& name : planners::planningMembers(planners)) {
+    const std::string source = planners::sourceOf(name);
+    if (isPlugin(source)) text += "; it calls planner '" + name + "' of " + source;
+  }
+  if (node != kMetricsNode) return text;
+  for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
+    if (isPlugin(metric.source))
+      text += "; it calls metric '" + metric.name + "' of " + metric.source;
+  }
+  return text;
+}
+
+/// One of them may be why the metrics node did not finish.
+void leaveOutPluginMetrics() {
+  for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
+    if (!isPlugin(metric.source)) continue;
+    metrics::leaveOutMetric(metric.name, "metric '" + metric.name + "' of " + metric.source +
+                                             " is left out: the metrics node did not finish");
+  }
+}
 
 const char* paceText(session::SessionControl::State state) {
   using State = session::SessionControl::State;
@@ -199,8 +233,10 @@ std::string TrafficSimulatorNode::takeCommand(const Topic& topic, const AnyMessa
 }
 
 /// A fault that a node reports is recorded once, whoever else reports it too.
-void TrafficSimulatorNode::noteFault(const std::string& source, const std::string& text) {
+void TrafficSimulatorNode::noteFault(const std::string& source, const std::string& given) {
   constexpr std::size_t kMostFaults = 200;
+  constexpr std::size_t kMostLetters = 1000;
+  const std::string text = core::cutText(given, kMostLetters);
   if (noted_faults_.size() == kMostFaults || !noted_faults_.insert(text).second) return;
   ROS_WARN("%s: %s", source.c_str(), text.c_str());
   world_->recordFault(source, text);
@@ -326,9 +362,9 @@ void TrafficSimulatorNode::advance() {
 }
 
 void TrafficSimulatorNode::endSession(const SessionEnd& end) {
-  ROS_ERROR_COND(end.status == SessionStatus::kError, "%s: %s", end.source.c_str(),
-                 end.text.c_str());
-  world_->end(end.status, {world_->snapshot().tick, end.source, end.text});
+  const std::string text = end.text + pluginsOf(end.source, setup_->options());
+  ROS_ERROR_COND(end.status == SessionStatus::kError, "%s: %s", end.source.c_str(), text.c_str());
+  world_->end(end.status, {world_->snapshot().tick, end.source, text});
 }
 
 void TrafficSimulatorNode::waitForResult() {
@@ -338,6 +374,7 @@ void TrafficSimulatorNode::waitForResult() {
 }
 
 void TrafficSimulatorNode::writeResultAlone() {
+  leaveOutPluginMetrics();
   if (!reserve_->adopt(published_, pacer_->elapsed())) return;
   ROS_WARN("The metrics node did not finish; the result is the simulator's own, in %s",
            results_.c_str());
