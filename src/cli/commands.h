@@ -4,7 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <string>
+#include <vector>
 
+#include "core/fork_server.h"
 #include "core/program.h"
 
 namespace cdiff::cli {
@@ -29,9 +32,15 @@ void addSuiteCommand(CLI::App& program, int& exit_code);
 void addSteeringCommand(CLI::App& program, int& exit_code);
 void addTuneCommand(CLI::App& program, int& exit_code);
 void addWhatIfCommand(CLI::App& program, int& exit_code);
+/// Runs the sessions of `cdiff evaluate`; not listed.
+void addServeCommand(CLI::App& program, int& exit_code);
 /// Where the program is built with ROS.
 void addReplayCommand(CLI::App& program, int& exit_code);
 void addCollectCommand(CLI::App& program, int& exit_code);
+
+/// Sets up a session by the words of a `cdiff run` and gives what drives it, which answers the exit
+/// code. Throws as that command does, and CLI::ParseError for words that it refuses.
+core::ForkedRun prepareRun(const std::vector<std::string>& words);
 
 /// Writes the page of a training, `training.html`, from the curves.csv and the model card of its
 /// output folder, and returns where. Throws InputError when the folder holds no training.

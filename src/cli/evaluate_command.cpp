@@ -50,6 +50,7 @@ struct EvaluateArguments {
   bool resume = false;
   bool overwrite = false;
   bool strict = false;
+  bool fresh = false;
 };
 
 constexpr const char* kMatrixFile = "matrix.yaml";
@@ -198,6 +199,7 @@ std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
   BatchProgress progress(now, arguments.jobs);
   evaluation::ExecutorOptions options;
   options.results = results;
+  if (!arguments.fresh) options.server = {"serve"};
   options.jobs = arguments.jobs;
   options.timeout = matrix.timeout;
   options.retries = static_cast<int>(matrix.retries);
@@ -303,6 +305,8 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
   command->add_flag("--strict", arguments->strict,
                     "Refuse a matrix with levels that do not fit together, instead of leaving "
                     "their runs out with a note");
+  command->add_flag("--fresh", arguments->fresh,
+                    "Start the program for each session, instead of once for each job");
   command->footer("Planners that can attack (mode safety_critical): " +
                   core::joinText(planners::guidedPlannerNames(), ", "));
   CLI::Option* resume = command->add_flag(

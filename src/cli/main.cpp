@@ -55,6 +55,7 @@ void addCommands(CLI::App& program, int& exit_code) {
   using namespace cdiff::cli;
   addRunCommand(program, exit_code);
   addDemoCommand(program, exit_code);
+  addServeCommand(program, exit_code);
   addEvaluateCommand(program, exit_code);
   addExportCommand(program, exit_code);
   addNewCommand(program, exit_code);
@@ -105,18 +106,15 @@ int main(int argc, char** argv) {
                            "Print version, revision, SUMO's version and instruction sets");
   int exit_code = cdiff::cli::ExitCode::kPassed;
   addCommands(program, exit_code);
-  try {
-    requireKnownCommand(program, argc, argv);
-    loadPluginsFor(argc, argv);
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);
-    std::cerr << "cdiff: " << cdiff::cli::refusalText(program, "cdiff", error) << "\n";
-    return cdiff::cli::ExitCode::kBadInput;
-  } catch (const std::exception& error) {
-    const cdiff::core::Failure failure = cdiff::core::failureOf(error);
-    std::cerr << "cdiff: " << failure.text << "\n";
-    return failure.exit_code;
-  }
-  return exit_code;
+  return cdiff::core::reportFailure([&] {
+    try {
+      requireKnownCommand(program, argc, argv);
+      loadPluginsFor(argc, argv);
+      program.parse(argc, argv);
+      return exit_code;
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() == 0) return program.exit(error);
+      throw cdiff::core::InputError(cdiff::cli::refusalText(program, "cdiff", error));
+    }
+  });
 }

@@ -76,6 +76,11 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   broken_ += record.failed();
   failed_ += record.has(record::Outcome::kFailed);
   simulated_ += record.simulated_seconds;
+  const auto factor = record.measures.find("real_time_factor");
+  if (record.complete() && factor != record.measures.end() && factor->second > 0.0) {
+    wall_ += record.wall_seconds;
+    start_up_ += record.wall_seconds - record.simulated_seconds / factor->second;
+  }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   const auto cbvs = record.measures.find(metrics::known::kCbvCount.name);
@@ -92,6 +97,11 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
 
 void BatchProgress::finish() const {
   if (terminal_ && done_ > resumed_) std::cerr << "\n";
+  if (wall_ > 0.0) {
+    std::cerr << "start-up (program, network, weights) took "
+              << core::formatFixed(100.0 * start_up_ / wall_, 0)
+              << " % of the sessions' wall time\n";
+  }
   if (resumed_ > 0) std::cerr << resumed_ << " runs were complete already\n";
 }
 

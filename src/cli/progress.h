@@ -42,7 +42,7 @@ class BatchProgress {
   void repeated(const std::string& cause, const std::vector<std::string>& ids) const;
   /// A run has ended; `resumed`: it was complete before this batch started.
   void ended(const evaluation::RunRecord& record, bool resumed);
-  /// Ends the rewritten line; call once, after the last run.
+  /// Ends the rewritten line and tells the share of start-up; call once, after the last run.
   void finish() const;
 
  private:
@@ -55,6 +55,8 @@ class BatchProgress {
   std::size_t broken_ = 0;
   std::size_t failed_ = 0;  ///< verdicts
   double simulated_ = 0.0;  ///< simulated time of all runs together [s]
+  double wall_ = 0.0;       ///< wall time of all complete runs together [s]
+  double start_up_ = 0.0;   ///< of it, before their sessions: program, network, weights [s]
 };
 
 }  // namespace cdiff::cli

@@ -17,6 +17,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/result_writer.h"
 #include "planners/registry.h"
+#include "plugins/plugin_loader.h"
 #include "record/result_folder.h"
 #include "record/session_text.h"
 #include "record/session_yaml.h"
@@ -32,7 +33,6 @@
 #include "node_graph/bags/recorded_steering.h"
 #include "node_graph/bags/session_bag_writer.h"
 #include "node_graph/result_reserve.h"
-#include "plugins/plugin_loader.h"
 #endif
 
 namespace cdiff::cli {
@@ -248,16 +248,27 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   return !bag_error.empty() && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
 }
 
+/// A session that only has to be driven.
+struct PreparedRun {
+  PreparedRun(const session::ScenarioOptions& options, RunOutput to)
+      : output(std::move(to)), setup(options) {}
+  RunOutput output;
+  session::SessionSetup setup;
+  std::optional<session::LoopParts> parts = {};  ///< absent: not made yet
+};
+
 /// Claims the folder and runs the session.
-int runHere(const session::SessionSetup& setup, const RunOutput& output,
-            const std::atomic<bool>& stop) {
+int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
+  const RunOutput& output = run.output;
+  const session::SessionSetup& setup = run.setup;
+  if (!run.parts) run.parts = session::makeParts(setup);
   const Clock::time_point begin = Clock::now();
   const auto claim = [&] {
     return record::ResultFolder(output.folder, "cdiff run", output.overwrite);
   };
   std::unique_ptr<session::ClosedLoop> loop;
   try {
-    loop = std::make_unique<session::ClosedLoop>(setup);
+    loop = std::make_unique<session::ClosedLoop>(setup, std::move(*run.parts));
   } catch (const core::SimulatorError& error) {
     const record::ResultFolder folder = claim();
     page::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
@@ -272,25 +283,22 @@ int runHere(const session::SessionSetup& setup, const RunOutput& output,
   return drive(setup, output, *loop, live.get(), stop, begin);
 }
 
-/// Runs to the end and answers the exit code. SIGINT, SIGTERM and SIGHUP end the session as
-/// interrupted. Throws InputError for a scenario that cannot be set up or that SUMO refuses, and
-/// for a folder that is in use or holds an earlier result (nothing in it is touched then); a
-/// simulator that cannot start or is lost gives a result folder with status error. A session with
-/// plug-ins runs in a process of its own.
-int runSession(const session::ScenarioOptions& options, const RunOutput& output) {
-  const std::atomic<bool>& stop = core::catchStopSignals();
-  record::requireFreeFolder(output.folder, output.overwrite);
-  const session::SessionSetup setup(options);
-  for (const std::string& warning : session::scenarioWarnings(setup))
+/// Runs to the end and answers the exit code. A stop ends the session as interrupted. Throws
+/// InputError for a scenario that SUMO refuses, and for a folder that is in use or holds an earlier
+/// result (nothing in it is touched then); a simulator that cannot start or is lost gives a result
+/// folder with status error. A session with plug-ins runs in a process of its own.
+int runSession(PreparedRun& run, const std::atomic<bool>& stop) {
+  for (const std::string& warning : session::scenarioWarnings(run.setup))
     std::cerr << "cdiff: warning: " << warning << "\n";
 #ifdef E2E_CDIFF_WITH_ROS
+  const RunOutput& output = run.output;
   if (!plugins::loadPlugins().empty()) {
     return runWatched(
-        {setup, output.folder, output.overwrite, output.quiet, output.answer_timeout, stop},
-        [&] { return runHere(setup, output, stop); });
+        {run.setup, output.folder, output.overwrite, output.quiet, output.answer_timeout, stop},
+        [&] { return runHere(run, stop); });
   }
 #endif
-  return runHere(setup, output, stop);
+  return runHere(run, stop);
 }
 
 struct RunArguments {
@@ -328,7 +336,15 @@ void requireSameSession(const std::string& source, const session::ScenarioOption
   session::requireSameSession(source, recorded, options, record::packageVersion());
 }
 
-int run(const RunArguments& arguments) {
+/// Throws InputError for a scenario that cannot be set up, and for a folder as runSession does.
+std::shared_ptr<PreparedRun> prepared(const session::ScenarioOptions& options,
+                                      const RunOutput& output) {
+  record::requireFreeFolder(output.folder, output.overwrite);
+  return std::make_shared<PreparedRun>(options, output);
+}
+
+/// Throws InputError as `prepared`.
+std::shared_ptr<PreparedRun> prepare(const RunArguments& arguments) {
   suite::requireOpen(arguments.request.scenario);
   session::SessionRequest request = arguments.request;
   if (!arguments.steering.empty()) request.steering = steeringOf(arguments.steering);
@@ -339,8 +355,14 @@ int run(const RunArguments& arguments) {
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
                                    std::to_string(options.seed) + "_" + core::timeForFileName())
           : fs::path(arguments.results);
-  return runSession(options, {folder, arguments.quiet, arguments.record, arguments.overwrite,
-                              portOf(arguments), arguments.answer_timeout});
+  return prepared(options, {folder, arguments.quiet, arguments.record, arguments.overwrite,
+                            portOf(arguments), arguments.answer_timeout});
+}
+
+/// SIGINT, SIGTERM and SIGHUP end the session as interrupted.
+int run(const RunArguments& arguments) {
+  const std::atomic<bool>& stop = core::catchStopSignals();
+  return runSession(*prepare(arguments), stop);
 }
 
 /// One shipped session; its table names the report. It passes when the session ran, whatever the
@@ -352,26 +374,15 @@ int demo(const fs::path& folder) {
   RunOutput output;
   output.folder = fs::absolute(folder);
   output.overwrite = true;
-  const int exit_code = runSession(session::resolveRequest(request), output);
+  const std::atomic<bool>& stop = core::catchStopSignals();
+  const int exit_code = runSession(*prepared(session::resolveRequest(request), output), stop);
   return isJudged(exit_code) ? ExitCode::kPassed : exit_code;
 }
 
-}  // namespace
-
-void addDemoCommand(CLI::App& program, int& exit_code) {
-  auto results = std::make_shared<std::string>("results/demo");
-  CLI::App* command =
-      program.add_subcommand("demo", "Run one shipped session and print where its report is");
-  command
-      ->add_option("--results", *results, "Result folder; what an earlier session left is replaced")
-      ->capture_default_str();
-  command->callback([results, &exit_code] { exit_code = demo(*results); });
-}
-
-void addRunCommand(CLI::App& program, int& exit_code) {
-  auto arguments = std::make_shared<RunArguments>();
+/// Adds the command, whose options fill `arguments`.
+CLI::App* addRunOptions(CLI::App& program, RunArguments& arguments) {
   CLI::App* command = program.add_subcommand("run", "Run one session and write its result folder");
-  session::SessionRequest& request = arguments->request;
+  session::SessionRequest& request = arguments.request;
   command->add_option("scenario", request.scenario, "Shipped scenario or scenario file");
   command->add_option("--bench2drive", request.bench2drive,
                       "Bench2Drive route file, instead of a scenario");
@@ -386,27 +397,57 @@ void addRunCommand(CLI::App& program, int& exit_code) {
   command->add_option("--seed", request.seed, "Root seed instead of the scenario's");
   command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--steering", arguments->steering,
+  command->add_option("--steering", arguments.steering,
                       "Steer as a result folder, its summary.json or session.bag, or a scenario "
                       "file says");
-  command->add_option("--results", arguments->results,
+  command->add_option("--results", arguments.results,
                       "Result folder (default: results/SCENARIO_SEED_TIME)");
-  command->add_flag("--overwrite", arguments->overwrite,
+  command->add_flag("--overwrite", arguments.overwrite,
                     "Replace what an earlier session left in the result folder");
-  command->add_flag("--record", arguments->record, "Also write session.bag, for replay and rviz");
+  command->add_flag("--record", arguments.record, "Also write session.bag, for replay and rviz");
   command->add_flag("--video", request.video, "Also write session.mp4: front view beside top view");
-  CLI::Option* watch = command->add_flag("--watch", arguments->watch,
+  CLI::Option* watch = command->add_flag("--watch", arguments.watch,
                                          "Show and steer the session on a page of this computer");
   command
-      ->add_option("--watch-port", arguments->watch_port,
+      ->add_option("--watch-port", arguments.watch_port,
                    "Port of that page (default: any that is free)")
       ->needs(watch);
   command
-      ->add_option("--answer-timeout", arguments->answer_timeout,
+      ->add_option("--answer-timeout", arguments.answer_timeout,
                    "Seconds of wall time for one call of a plug-in (default: 30)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--quiet", arguments->quiet, "No progress line, no table");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command->add_flag("--quiet", arguments.quiet, "No progress line, no table");
+  return command;
+}
+
+}  // namespace
+
+core::ForkedRun prepareRun(const std::vector<std::string>& words) {
+  RunArguments arguments;
+  CLI::App program;
+  addRunOptions(program, arguments);
+  program.parse({words.rbegin(), words.rend()});  // CLI11 takes them in reverse
+  const std::shared_ptr<PreparedRun> prepared = prepare(arguments);
+  // A plug-in's planner may remember in its library what it did before: its child makes it anew.
+  if (plugins::loadPlugins().empty()) prepared->parts = session::makeParts(prepared->setup);
+  return [prepared] { return runSession(*prepared, core::catchStopSignals()); };
+}
+
+void addDemoCommand(CLI::App& program, int& exit_code) {
+  auto results = std::make_shared<std::string>("results/demo");
+  CLI::App* command =
+      program.add_subcommand("demo", "Run one shipped session and print where its report is");
+  command
+      ->add_option("--results", *results, "Result folder; what an earlier session left is replaced")
+      ->capture_default_str();
+  command->callback([results, &exit_code] { exit_code = demo(*results); });
+}
+
+void addRunCommand(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<RunArguments>();
+  addRunOptions(program, *arguments)->callback([arguments, &exit_code] {
+    exit_code = run(*arguments);
+  });
 }
 
 }  // namespace cdiff::cli

@@ -92,6 +92,55 @@ std::string ProcessOutput::end(std::size_t most) const {
   return text;
 }
 
+namespace {
+
+int openLog(const ProcessStreams& streams) {
+  if (streams.log.empty()) return -1;
+  const int mode = streams.append ? O_APPEND : O_TRUNC;
+  const int log = ::open(streams.log.c_str(), O_WRONLY | O_CREAT | mode, 0644);
+  // Room for the last words on a disk that fills up meanwhile; what is not used is not kept.
+  if (log >= 0 && !streams.append) (void)::fallocate(log, FALLOC_FL_KEEP_SIZE, 0, kLogReserve);
+  return log;
+}
+
+}  // namespace
+
+void becomeChild(pid_t parent, const ProcessStreams& streams) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(127);
+  ::setpgid(0, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  const int from = streams.input >= 0 ? streams.input : ::open("/dev/null", O_RDONLY);
+  const int to = streams.output >= 0 ? streams.output : openLog(streams);
+  if (from >= 0) ::dup2(from, STDIN_FILENO);
+  if (to >= 0) {
+    ::dup2(to, STDOUT_FILENO);
+    ::dup2(to, STDERR_FILENO);
+  }
+  ::close_range(3, ~0U, 0);
+}
+
+std::optional<int> reapGroup(pid_t leader, bool wait) {
+  siginfo_t end{};
+  int answer = 0;
+  do {
+    answer =
+        ::waitid(P_PID, static_cast<id_t>(leader), &end, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG));
+  } while (answer < 0 && errno == EINTR);
+  if (answer == 0 && end.si_pid == 0) return std::nullopt;
+  int status = 0;
+  if (answer != 0) return status;  // someone else reaped it
+  ::kill(-leader, SIGKILL);        // what it left behind
+  ::waitpid(leader, &status, 0);
+  return status;
+}
+
+int exitCodeOf(int status) {
+  return WIFSIGNALED(status) ? ExitCode::kSignal + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
 /// What the child runs, laid out before the fork: between fork and exec only async-signal-safe
 /// calls are allowed.
 struct GuardedProcess::Image {
@@ -100,31 +149,9 @@ struct GuardedProcess::Image {
   std::vector<std::string> environment;
   ProcessStreams streams;
 
-  int openLog() const {
-    if (streams.log.empty()) return -1;
-    const int mode = streams.append ? O_APPEND : O_TRUNC;
-    const int log = ::open(streams.log.c_str(), O_WRONLY | O_CREAT | mode, 0644);
-    // Room for the last words on a disk that fills up meanwhile; what is not used is not kept.
-    if (log >= 0 && !streams.append) (void)::fallocate(log, FALLOC_FL_KEEP_SIZE, 0, kLogReserve);
-    return log;
-  }
-
   /// Runs in the child and does not return.
   [[noreturn]] void execute(pid_t parent, char* const* argv, char* const* envp) const {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(127);
-    ::setpgid(0, 0);
-    sigset_t none;
-    sigemptyset(&none);
-    ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    const int from = streams.input >= 0 ? streams.input : ::open("/dev/null", O_RDONLY);
-    const int to = streams.output >= 0 ? streams.output : openLog();
-    if (from >= 0) ::dup2(from, STDIN_FILENO);
-    if (to >= 0) {
-      ::dup2(to, STDOUT_FILENO);
-      ::dup2(to, STDERR_FILENO);
-    }
-    ::close_range(3, ~0U, 0);
+    becomeChild(parent, streams);
     ::execve(program.c_str(), argv, envp);
     ::_exit(127);
   }
@@ -193,18 +220,10 @@ void GuardedProcess::guard(const Image& image) {
 
 bool GuardedProcess::reap(bool wait) {
   if (reaped_) return true;
-  siginfo_t end{};
-  int answer = 0;
-  do {
-    answer =
-        ::waitid(P_PID, static_cast<id_t>(id_), &end, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG));
-  } while (answer < 0 && errno == EINTR);
-  if (answer == 0 && end.si_pid == 0) return false;
-  reaped_ = true;  // an error means that someone else reaped it
-  if (answer != 0) return true;
-  ::kill(-id_, SIGKILL);  // what it left behind
-  ::waitpid(id_, &status_, 0);
-  return true;
+  const std::optional<int> status = reapGroup(id_, wait);
+  reaped_ = status.has_value();
+  if (status) status_ = *status;
+  return reaped_;
 }
 
 bool GuardedProcess::ended() {
@@ -233,10 +252,9 @@ void GuardedProcess::kill() {
 }
 
 int GuardedProcess::exitCode() {
-  const int signal = endSignal();
-  if (signal != 0) return ExitCode::kSignal + signal;
+  if (!ended()) return -1;
   const std::lock_guard<std::mutex> lock(mutex_);
-  return reaped_ ? WEXITSTATUS(status_) : -1;
+  return exitCodeOf(status_);
 }
 
 int GuardedProcess::endSignal() {

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/child_process.h"
 #include "core/file_descriptor.h"
 
 namespace cdiff::core {
@@ -44,6 +45,19 @@ struct ProcessStreams {
                        ///< last messages fit even if the disk fills up
 };
 
+/// Makes a process that was just forked the leader of a group of its own with these streams, no
+/// other descriptor and no blocked signal. It is killed when the thread that forked it in process
+/// `parent` ends. Only async-signal-safe calls.
+void becomeChild(pid_t parent, const ProcessStreams& streams);
+
+/// Reaps a child that leads a process group, and kills what is left of the group; without `wait`
+/// only if it has ended. Its status as ::waitpid gives it (0 where another part of the program
+/// reaped it), or nothing while it runs.
+std::optional<int> reapGroup(pid_t leader, bool wait);
+
+/// The exit code in a status of ::waitpid; 128 + the signal that ended the process.
+int exitCodeOf(int status);
+
 /// A file in memory that collects what a child prints; give its descriptor to
 /// ProcessStreams::output.
 class ProcessOutput {
@@ -61,7 +75,7 @@ class ProcessOutput {
 /// process is killed, and that is killed when a deadline [s of wall time] passes: the only way out
 /// of a blocking call to a child that has frozen. When it ends, the rest of its group is killed,
 /// too. Used for SUMO, netconvert, ffmpeg and the sessions of a batch.
-class GuardedProcess {
+class GuardedProcess : public ChildProcess {
  public:
   /// Starts `program`; exit code 127 when it cannot be executed. A guardian thread starts the child
   /// and lives as long as this object, because the kernel ends the child together with the thread
@@ -70,21 +84,21 @@ class GuardedProcess {
   GuardedProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  const std::vector<std::string>& environment, const ProcessStreams& streams);
   /// Ends and reaps the child.
-  ~GuardedProcess();
+  ~GuardedProcess() override;
   GuardedProcess(const GuardedProcess&) = delete;
   GuardedProcess& operator=(const GuardedProcess&) = delete;
 
   int id() const { return id_; }
   /// Whether the child has ended; reaps it, never waits.
-  bool ended();
+  bool ended() override;
   /// Waits until it has ended, at most `seconds`; returns whether it has.
   bool waitForEnd(double seconds);
   /// Sends a signal to its group; does nothing when it has ended.
-  void signal(int number);
+  void signal(int number) override;
   /// Ends and reaps the child.
   void kill();
   /// Its exit code, or 128 + the signal that ended it; -1 while it runs.
-  int exitCode();
+  int exitCode() override;
   /// The signal that ended it; 0 when none did, or while it runs.
   int endSignal();
   /// How it ended: "exit code 1", "signal 9 (Killed)", "still running".

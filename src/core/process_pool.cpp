@@ -2,13 +2,15 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "core/process_pool.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <thread>
 
-#include "core/guarded_process.h"
+#include "core/fork_server.h"
 
 namespace cdiff::core {
 namespace {
@@ -24,7 +26,7 @@ double secondsSince(Clock::time_point begin) {
 /// One process under way.
 struct Running {
   std::size_t job = 0;
-  std::unique_ptr<GuardedProcess> process;
+  std::shared_ptr<ChildProcess> process;
   Clock::time_point begin = Clock::now();
   bool timed_out = false;
 };
@@ -32,8 +34,8 @@ struct Running {
 class ProcessPool {
  public:
   ProcessPool(std::deque<std::size_t> jobs, const PoolLimits& limits, const std::atomic<bool>& stop,
-              const PoolCalls& calls)
-      : queue_(std::move(jobs)), limits_(limits), stop_(stop), calls_(calls) {}
+              const PoolCalls& calls, const std::optional<PoolServer>& server)
+      : queue_(std::move(jobs)), limits_(limits), stop_(stop), calls_(calls), server_(server) {}
 
   void run() {
     while (!running_.empty() || (!queue_.empty() && !stop_)) {
@@ -51,15 +53,35 @@ class ProcessPool {
       const std::size_t number = queue_.front();
       queue_.pop_front();
       const ProcessJob job = calls_.start(number);
-      ProcessStreams streams;
-      streams.log = job.log;
-      streams.append = false;
       Running started;
       started.job = number;
-      started.process = std::make_unique<GuardedProcess>(job.program, job.arguments,
-                                                         std::vector<std::string>{}, streams);
+      started.process = server_ ? serve(job) : startAlone(job);
       running_.push_back(std::move(started));
     }
+  }
+
+  static std::shared_ptr<ChildProcess> startAlone(const ProcessJob& job) {
+    ProcessStreams streams;
+    streams.log = job.log;
+    streams.append = false;
+    return std::make_shared<GuardedProcess>(job.program, job.arguments, std::vector<std::string>{},
+                                            streams);
+  }
+
+  /// By a server that has nothing to do, or else a new one.
+  std::shared_ptr<ChildProcess> serve(const ProcessJob& job) {
+    servers_.erase(std::remove_if(servers_.begin(), servers_.end(),
+                                  [](const auto& server) { return !server->serves(); }),
+                   servers_.end());
+    // One whose job waits to be collected is also held by that job.
+    auto idle = std::find_if(servers_.begin(), servers_.end(),
+                             [](const auto& server) { return server.use_count() == 1; });
+    if (idle == servers_.end()) {
+      servers_.push_back(std::make_shared<ForkServer>(server_->program, server_->arguments));
+      idle = std::prev(servers_.end());
+    }
+    (*idle)->begin(job.arguments, job.log);
+    return *idle;
   }
 
   void interrupt() {
@@ -97,6 +119,8 @@ class ProcessPool {
   const PoolLimits& limits_;
   const std::atomic<bool>& stop_;
   const PoolCalls& calls_;
+  const std::optional<PoolServer>& server_;
+  std::vector<std::shared_ptr<ForkServer>> servers_;
   std::vector<Running> running_;
   std::optional<Clock::time_point> interrupted_at_;
 };
@@ -104,8 +128,9 @@ class ProcessPool {
 }  // namespace
 
 void runProcesses(std::deque<std::size_t> jobs, const PoolLimits& limits,
-                  const std::atomic<bool>& stop, const PoolCalls& calls) {
-  ProcessPool(std::move(jobs), limits, stop, calls).run();
+                  const std::atomic<bool>& stop, const PoolCalls& calls,
+                  const std::optional<PoolServer>& server) {
+  ProcessPool(std::move(jobs), limits, stop, calls, server).run();
 }
 
 }  // namespace cdiff::core

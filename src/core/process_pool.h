@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace cdiff::core {
 
 /// What one job runs.
 struct ProcessJob {
-  std::filesystem::path program;
+  std::filesystem::path program;       ///< unused where a server runs it
   std::vector<std::string> arguments;  ///< without the program
   std::filesystem::path log = {};      ///< created; empty: output goes to our own streams
 };
@@ -38,6 +39,12 @@ struct PoolLimits {
   double grace = std::numeric_limits<double>::infinity();    ///< time to end after a stop [s]
 };
 
+/// A program that runs jobs as a server (core/fork_server.h), and its arguments.
+struct PoolServer {
+  std::filesystem::path program;
+  std::vector<std::string> arguments;
+};
+
 /// Callbacks of a pool.
 struct PoolCalls {
   /// Called just before a job's process starts; returns what to run.
@@ -47,9 +54,11 @@ struct PoolCalls {
 };
 
 /// Runs the jobs in their order and returns when all have ended. Once `stop` is true no process is
-/// started and those under way get SIGINT. Throws SimulatorError when no process can be made; those
-/// under way are killed then.
+/// started and those under way get SIGINT. With a server, as many of it run as jobs at a time, and
+/// each job is a child of one; a server that has died is replaced. Throws SimulatorError when no
+/// process can be made; those under way are killed then.
 void runProcesses(std::deque<std::size_t> jobs, const PoolLimits& limits,
-                  const std::atomic<bool>& stop, const PoolCalls& calls);
+                  const std::atomic<bool>& stop, const PoolCalls& calls,
+                  const std::optional<PoolServer>& server = {});
 
 }  // namespace cdiff::core

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <new>
 
 #include "e2e_cdiff/core/exceptions.h"
@@ -133,6 +134,16 @@ Failure failureOf(const std::exception& error) {
         "internal error (" + text + "); please report it together with the command and its input"};
   }
   return {ExitCode::kRunTimeError, text};
+}
+
+int reportFailure(const std::function<int()>& call) {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    const Failure failure = failureOf(error);
+    std::cerr << "cdiff: " << failure.text << "\n";
+    return failure.exit_code;
+  }
 }
 
 }  // namespace cdiff::core

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,5 +56,9 @@ struct Failure {
 /// with the system's reason; memory that ran out and errors of the standard library, which say
 /// nothing to a user, are explained.
 Failure failureOf(const std::exception& error);
+
+/// The exit code that `call` gives. Where it throws, that of the failure, whose text is printed on
+/// standard error.
+int reportFailure(const std::function<int()>& call);
 
 }  // namespace cdiff::core

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/kept_content.h"
 #include "core/spelling.h"
 #include "core/text.h"
 #include "diffusion/normalizer.h"
@@ -116,6 +117,19 @@ std::string modelFilesSha256(const std::string& name_or_folder) {
   const fs::path folder = folderOf(name_or_folder);
   return core::sha256(core::sha256(core::readFile(folder / kEncoderFile, "weight file")) +
                       core::sha256(core::readFile(folder / kDenoiserFile, "weight file")));
+}
+
+std::shared_ptr<const Model> sharedModel(const std::string& name_or_folder) {
+  const auto load = [&] { return std::make_shared<Model>(loadModel(name_or_folder)); };
+  if (!core::keepsContent()) return load();
+  return core::keptContent<Model>(
+      "model", folderOf(name_or_folder).string() + '\0' + modelFilesSha256(name_or_folder), load);
+}
+
+std::string identityOf(const Model& model) {
+  std::string identity = model.sha256;
+  for (const auto& [key, value] : describeDenoiser(model)) identity += "\n" + key + " " + value;
+  return identity;
 }
 
 ModelFiles modelFiles(const Model& model) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "diffusion/network/architecture.h"
@@ -30,6 +31,12 @@ struct Model {
 /// ("e2e_cdiff.encoder.1", "e2e_cdiff.denoiser.1"), "architecture" and, of the denoiser,
 /// "normalizer" and "spread" are missing or malformed.
 Model loadModel(const std::string& name_or_folder);
+
+/// As loadModel; the kept one where this process keeps content (core/kept_content.h).
+std::shared_ptr<const Model> sharedModel(const std::string& name_or_folder);
+
+/// All that a network depends on which is made of the model.
+std::string identityOf(const Model& model);
 
 /// Identifies the files of a folder or shipped model for records: SHA-256 of the hashes of encoder
 /// and denoiser file, one after the other. Throws InputError for an unknown model or missing file.

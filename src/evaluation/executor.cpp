@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/file.h"
@@ -50,9 +51,12 @@ class Executor {
     for (std::size_t i = 0; i < plan_.size(); ++i) enqueue(i);
     orderQueue();
     announceRuns();
+    std::optional<core::PoolServer> server;
+    if (!options_.server.empty()) server = {options_.program, options_.server};
     core::runProcesses(queue_, {options_.jobs, options_.timeout, options_.grace}, stop_,
                        {[this](std::size_t index) { return start(index); },
-                        [this](const core::ProcessEnd& end) { return finish(end); }});
+                        [this](const core::ProcessEnd& end) { return finish(end); }},
+                       server);
     return std::move(records_);
   }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "evaluation/run_record.h"
@@ -15,7 +16,10 @@ namespace cdiff::evaluation {
 /// earlier batch leaves to do, and whom it informs.
 struct ExecutorOptions {
   std::filesystem::path program =
-      "/proc/self/exe";           ///< understands `run FILE --quiet --results DIR --overwrite`
+      "/proc/self/exe";  ///< understands `run FILE --quiet --results DIR --overwrite`
+  /// Arguments that make the program a server for sessions, which starts once and forks a child for
+  /// each (core/fork_server.h); empty: the program starts afresh for each.
+  std::vector<std::string> server = {};
   std::filesystem::path results;  ///< result folder of the batch
   int jobs = 1;                   ///< processes at a time
   double timeout = 600.0;         ///< wall time of one attempt [s]

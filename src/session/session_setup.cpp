@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/file.h"
+#include "core/kept_content.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/sumo_input_rules.h"
 
@@ -26,29 +28,37 @@ map::ImportedNetwork imported(const std::string& source) {
 
 }  // namespace
 
+SessionSetup::Roads::Roads(const map::ImportedNetwork& import)
+    : network(map::RoadNetwork::fromText(import.text, import.source.string())),
+      graph(network),
+      drivable_area(network) {}
+
+std::shared_ptr<const SessionSetup::Roads> SessionSetup::roadsOf(
+    const map::ImportedNetwork& import) {
+  return core::keptContent<Roads>("roads",
+                                  import.source.string() + '\0' + core::sha256(import.text),
+                                  [&] { return std::make_shared<Roads>(import); });
+}
+
 SessionSetup::SessionSetup(const ScenarioOptions& options)
     : options_(validated(options)),
       rigs_(options_),
       import_(imported(options.network)),
-      network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
-      graph_(network_),
-      drivable_area_(network_),
+      roads_(roadsOf(import_)),
       ego_route_(
-          map::matchRoute(network_, map::makeRoute(graph_, options_.route).path().points())) {}
+          map::matchRoute(network(), map::makeRoute(graph(), options_.route).path().points())) {}
 
 SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
                            const std::vector<Eigen::Vector3d>& ego_route_points)
     : options_(options),
       rigs_(options_),
       import_(std::move(import)),
-      network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
-      graph_(network_),
-      drivable_area_(network_),
-      ego_route_(map::matchRoute(network_, ego_route_points)) {}
+      roads_(roadsOf(import_)),
+      ego_route_(map::matchRoute(network(), ego_route_points)) {}
 
 planning::PlanningContext SessionSetup::planningContext() const {
-  return {network_,
-          drivable_area_,
+  return {network(),
+          drivableArea(),
           static_cast<std::uint64_t>(options_.seed),
           options_.simulation_step,
           options_.decision_period,
@@ -78,7 +88,7 @@ std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {
   session.simulation_step = options_.simulation_step;
   session.seed = static_cast<std::uint64_t>(options_.seed);
   session.lights_green = options_.lights == "green";
-  return std::make_unique<simulation::SumoSimulator>(options_.sumo, session, network_);
+  return std::make_unique<simulation::SumoSimulator>(options_.sumo, session, network());
 }
 
 double SessionSetup::cbvTargetSpeed(const std::string& vehicle_id) const {
@@ -101,7 +111,7 @@ metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
        seed = static_cast<std::uint64_t>(options_.seed)](const std::string& vehicle_id) {
         return session::cbvTargetSpeed(speeds, fixed, seed, vehicle_id);
       };
-  options.network = &network_;
+  options.network = &network();
   options.metrics = options_.metrics;
   return options;
 }

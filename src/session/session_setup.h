@@ -30,9 +30,9 @@ class SessionSetup {
 
   const ScenarioOptions& options() const { return options_; }
   const map::ImportedNetwork& import() const { return import_; }
-  const map::RoadNetwork& network() const { return network_; }
-  const map::LaneGraph& graph() const { return graph_; }
-  const map::DrivableArea& drivableArea() const { return drivable_area_; }
+  const map::RoadNetwork& network() const { return roads_->network; }
+  const map::LaneGraph& graph() const { return roads_->graph; }
+  const map::DrivableArea& drivableArea() const { return roads_->drivable_area; }
   /// Always matched from its points, so that every deployment has the same.
   const map::Route& egoRoute() const { return ego_route_; }
   /// The cameras of ego and CBVs.
@@ -56,12 +56,19 @@ class SessionSetup {
   std::uint64_t ticksPerDecision() const;
 
  private:
+  /// What follows from the network's text alone.
+  struct Roads {
+    explicit Roads(const map::ImportedNetwork& import);
+    map::RoadNetwork network;
+    map::LaneGraph graph;
+    map::DrivableArea drivable_area;
+  };
+  static std::shared_ptr<const Roads> roadsOf(const map::ImportedNetwork& import);
+
   ScenarioOptions options_;
   VehicleRigs rigs_;
   map::ImportedNetwork import_;
-  map::RoadNetwork network_;
-  map::LaneGraph graph_;
-  map::DrivableArea drivable_area_;
+  std::shared_ptr<const Roads> roads_;  ///< sessions on a network may share them
   map::Route ego_route_;
 };
 

@@ -46,13 +46,13 @@ void requireInputs(const DiffusionOptions& options, const diffusion::Model& mode
 }
 
 /// The model, after a check of the options against each other and against it.
-diffusion::Model loadChecked(const DiffusionOptions& options,
-                             const guidance::GuidanceOptions& guidance,
-                             const std::string& guidance_group) {
-  diffusion::Model model = diffusion::loadModel(options.model);
+std::shared_ptr<const diffusion::Model> loadChecked(const DiffusionOptions& options,
+                                                    const guidance::GuidanceOptions& guidance,
+                                                    const std::string& guidance_group) {
+  std::shared_ptr<const diffusion::Model> model = diffusion::sharedModel(options.model);
   options.validate();
   guidance.validate(guidance_group);
-  requireInputs(options, model);
+  requireInputs(options, *model);
   return model;
 }
 
@@ -69,13 +69,13 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       vehicle_(vehicle),
       context_(context),
       model_(loadChecked(options, guidance, guidance_group)),
-      schedule_(static_cast<int>(model_.architecture.diffusion_steps)),
-      sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
+      schedule_(static_cast<int>(model_->architecture.diffusion_steps)),
+      sampler_(samplerOptions(options, guidance), schedule_, model_->spread,
                core::RandomStream(context.seed, "diffusion")),
       exact_(vehicle, dynamics::throttleResponse(options.response)),
-      situations_(options_, guidance_, vehicle, context, model_, exact_),
-      choice_(guidance_, options.hysteresis, model_.normalizer, exact_),
-      workers_(options, model_, options.conditioning != "image" && options.route_scale != 1.0) {
+      situations_(options_, guidance_, vehicle, context, *model_, exact_),
+      choice_(guidance_, options.hysteresis, model_->normalizer, exact_),
+      workers_(options, *model_, options.conditioning != "image" && options.route_scale != 1.0) {
   requireWindows(guidance_);
   prepareChallenge();
 }
@@ -104,7 +104,7 @@ std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTas
                                                      std::uint64_t tick,
                                                      DiffusionMemory& memory) const {
   if (!planning::isFinite(task.vehicle->state)) return "its state is not finite";
-  const diffusion::Architecture& sizes = model_.architecture;
+  const diffusion::Architecture& sizes = model_->architecture;
   const ImageExpectation expectation{static_cast<int>(sizes.image_width),
                                      static_cast<int>(sizes.image_height),
                                      options_.frozen_image_time, context_.simulation_step};
@@ -139,7 +139,7 @@ std::unique_ptr<diffusion::StateBranch> DiffusionPlanner::stateBranch(
   std::vector<double> speeds;
   for (const diffusion::Context& context : contexts) speeds.push_back(context.speed);
   return std::make_unique<diffusion::ExactStateBranch>(
-      vehicle_, model_.normalizer, speeds, dynamics::throttleResponse(options_.response));
+      vehicle_, model_->normalizer, speeds, dynamics::throttleResponse(options_.response));
 }
 
 void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Solution*>& solutions) {
@@ -171,7 +171,7 @@ void DiffusionPlanner::solvePart(std::uint64_t tick, Worker& worker,
   diffusion::Denoiser& denoiser = worker.denoiser(situations_.conditionsOnRoute());
   denoiser.setContexts(contexts);
   const auto branch = stateBranch(denoiser, contexts);
-  GuidedBatch guided(model_.normalizer, objectives);
+  GuidedBatch guided(model_->normalizer, objectives);
   const auto samples = sampler_.sample(denoiser, *branch, requests, &guided);
   const auto candidates = static_cast<std::size_t>(guidance_.candidates);
   for (std::size_t i = 0; i < solutions.size(); ++i) {

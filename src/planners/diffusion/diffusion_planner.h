@@ -50,7 +50,7 @@ class DiffusionPlanner : public planning::Planner {
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
   void setGuidance(const guidance::GuidanceOptions& guidance) override;
-  const diffusion::Model& model() const { return model_; }
+  const diffusion::Model& model() const { return *model_; }
 
  private:
   /// A situation, and what is driven in it.
@@ -88,7 +88,7 @@ class DiffusionPlanner : public planning::Planner {
   std::string guidance_group_;
   dynamics::BicycleModelOptions vehicle_;
   planning::PlanningContext context_;
-  diffusion::Model model_;
+  std::shared_ptr<const diffusion::Model> model_;
   diffusion::NoiseSchedule schedule_;
   diffusion::Sampler sampler_;
   dynamics::ActionRollout exact_;

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <future>
+#include <string>
+
+#include "core/kept_content.h"
 
 namespace cdiff::planners {
 namespace {
@@ -12,32 +15,52 @@ inference::InstructionSet instructionSetOf(const DiffusionOptions& options) {
   return inference::instructionSetNamed(options.isa, "diffusion.isa");
 }
 
-diffusion::ImageEncoder encoderFor(const DiffusionOptions& options, const diffusion::Model& model) {
+/// A network of a worker, whose `kind` is another for each that works beside it.
+template <class Network, class... Further>
+std::shared_ptr<Network> networkFor(const std::string& kind, const diffusion::Model& model,
+                                    inference::InstructionSet set, Further... further) {
+  const auto make = [&] { return std::make_shared<Network>(model, further..., set); };
+  if (!core::keepsContent()) return make();
+  return core::keptContent<Network>(kind, diffusion::identityOf(model), make);
+}
+
+std::shared_ptr<diffusion::ImageEncoder> encoderFor(const DiffusionOptions& options,
+                                                    const diffusion::Model& model,
+                                                    const std::string& worker) {
   inference::pinOneDnn(options.isa, "diffusion.isa");
   const inference::Precision precision =
       inference::precisionNamed(options.precision, options.isa, "diffusion.precision");
-  return diffusion::ImageEncoder(model, precision, instructionSetOf(options));
+  return networkFor<diffusion::ImageEncoder>(
+      "encoder " + options.precision + " " + options.isa + worker, model, instructionSetOf(options),
+      precision);
 }
 
 }  // namespace
 
-Worker::Worker(const DiffusionOptions& options, const diffusion::Model& model, bool may_scale_route)
-    : encoder_(encoderFor(options, model)), denoiser_(model, instructionSetOf(options)) {
+Worker::Worker(const DiffusionOptions& options, const diffusion::Model& model, bool may_scale_route,
+               std::int64_t number) {
+  const std::string worker = " of worker " + std::to_string(number);
+  encoder_ = encoderFor(options, model, worker);
+  const auto denoiser = [&](const std::string& kind) {
+    return networkFor<diffusion::CpuDenoiser>(kind + " " + options.isa + worker, model,
+                                              instructionSetOf(options));
+  };
+  denoiser_ = denoiser("denoiser");
   if (!may_scale_route) return;
-  routeless_ = std::make_unique<diffusion::CpuDenoiser>(model, instructionSetOf(options));
-  scaled_ =
-      std::make_unique<diffusion::RouteScaledDenoiser>(denoiser_, *routeless_, options.route_scale);
+  routeless_ = denoiser("routeless denoiser");
+  scaled_ = std::make_unique<diffusion::RouteScaledDenoiser>(*denoiser_, *routeless_,
+                                                             options.route_scale);
 }
 
 diffusion::Denoiser& Worker::denoiser(bool route) {
   if (route && scaled_) return *scaled_;
-  return denoiser_;
+  return *denoiser_;
 }
 
 DiffusionWorkers::DiffusionWorkers(const DiffusionOptions& options, const diffusion::Model& model,
                                    bool may_scale_route) {
   for (std::int64_t i = 0; i < options.threads; ++i)
-    workers_.push_back(std::make_unique<Worker>(options, model, may_scale_route));
+    workers_.push_back(std::make_unique<Worker>(options, model, may_scale_route, i));
 }
 
 void DiffusionWorkers::forEach(std::size_t count, const Part& part) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -17,18 +18,20 @@ namespace cdiff::planners {
 /// Encoder and denoiser of a model for one thread.
 class Worker {
  public:
-  /// `may_scale_route`: whether `denoiser` may be asked to mix predictions (route_scale).
-  Worker(const DiffusionOptions& options, const diffusion::Model& model, bool may_scale_route);
+  /// `may_scale_route`: whether `denoiser` may be asked to mix predictions (route_scale). The
+  /// networks of worker `number` are kept where this process keeps content.
+  Worker(const DiffusionOptions& options, const diffusion::Model& model, bool may_scale_route,
+         std::int64_t number);
 
-  diffusion::ImageEncoder& encoder() { return encoder_; }
+  diffusion::ImageEncoder& encoder() { return *encoder_; }
   /// `route`: whether its vehicles are given their routes, with which and without which it then
   /// mixes predictions where route_scale is not 1.
   diffusion::Denoiser& denoiser(bool route);
 
  private:
-  diffusion::ImageEncoder encoder_;
-  diffusion::CpuDenoiser denoiser_;
-  std::unique_ptr<diffusion::CpuDenoiser> routeless_;       ///< where route_scale is not 1
+  std::shared_ptr<diffusion::ImageEncoder> encoder_;
+  std::shared_ptr<diffusion::CpuDenoiser> denoiser_;
+  std::shared_ptr<diffusion::CpuDenoiser> routeless_;       ///< where route_scale is not 1
   std::unique_ptr<diffusion::RouteScaledDenoiser> scaled_;  ///< likewise
 };
 
