@@ -426,8 +426,12 @@ core::ForkedRun prepareRun(const std::vector<std::string>& words) {
   RunArguments arguments;
   CLI::App program;
   addRunOptions(program, arguments);
-  program.parse({words.rbegin(), words.rend()});  // CLI11 takes them in reverse
+  std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 takes them
+  program.parse(reversed);
   const std::shared_ptr<PreparedRun> prepared = prepare(arguments);
+  // The level that the ego starts on is made here: children cannot hand on what they make.
+  const Eigen::Vector3d start = prepared->setup.egoRoute().path().pointAt(0.0);
+  prepared->setup.drivableArea().contains(start.head<2>(), start.z());
   // A plug-in's planner may remember in its library what it did before: its child makes it anew.
   if (plugins::loadPlugins().empty()) prepared->parts = session::makeParts(prepared->setup);
   return [prepared] { return runSession(*prepared, core::catchStopSignals()); };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
@@ -92,38 +93,62 @@ Strip lanePart(const Lane& lane, double begin, double end) {
   return strip;
 }
 
-/// Union of the chosen pieces; neighboring pieces of a lane form one strip.
-std::vector<Ring> outlineOf(const RoadNetwork& network, const std::vector<Piece>& pieces,
-                            const std::vector<bool>& chosen) {
+/// What the area of a level is the union of.
+struct Outlines {
   std::vector<Strip> strips;
   std::vector<Ring> polygons;
+};
+
+/// Of the chosen pieces; neighboring pieces of a lane form one strip.
+Outlines outlinesOf(const RoadNetwork& network, const std::vector<Piece>& pieces,
+                    const std::vector<bool>& chosen) {
+  Outlines outlines;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (!chosen[i]) continue;
     if (pieces[i].lane < 0) {
       Ring ring;
       const auto& shape = network.junctions()[static_cast<std::size_t>(pieces[i].junction)].shape;
       for (const Eigen::Vector3d& point : shape) ring.push_back(point.head<2>());
-      polygons.push_back(std::move(ring));
+      outlines.polygons.push_back(std::move(ring));
       continue;
     }
     const std::size_t first = i;
     while (i + 1 < pieces.size() && chosen[i + 1] && pieces[i + 1].lane == pieces[first].lane) ++i;
-    strips.push_back(
+    outlines.strips.push_back(
         lanePart(network.lane(pieces[first].lane), pieces[first].begin, pieces[i].end));
   }
-  return uniteOutlines(strips, polygons);
+  return outlines;
 }
 
 }  // namespace
 
-/// The area between two heights (equal unless neighboring heights hold the same pieces).
+/// The area between two heights (equal unless neighboring heights hold the same pieces). Its border
+/// is made when it is first asked for: a session seldom comes to all levels of a town.
 struct DrivableArea::Level {
-  Level(double height, std::vector<Ring> outline)
-      : lowest(height), highest(height), rings(std::move(outline)), index(rings) {}
-  double lowest;   ///< [m]
-  double highest;  ///< [m]
-  std::vector<Ring> rings;
-  BorderIndex index;
+  struct Border {
+    explicit Border(std::vector<Ring> all) : rings(std::move(all)), index(rings) {}
+    std::vector<Ring> rings;
+    BorderIndex index;
+  };
+
+  Level(double height, Outlines outlines)
+      : lowest(height),
+        highest(height),
+        strips(std::move(outlines.strips)),
+        polygons(std::move(outlines.polygons)) {}
+  /// From any thread.
+  const Border& border() const {
+    std::call_once(
+        made, [this] { made_border = std::make_unique<Border>(uniteOutlines(strips, polygons)); });
+    return *made_border;
+  }
+
+  double lowest;              ///< [m]
+  double highest;             ///< [m]
+  std::vector<Strip> strips;  ///< the area is their union with the polygons
+  std::vector<Ring> polygons;
+  mutable std::once_flag made;
+  mutable std::unique_ptr<const Border> made_border;
 };
 
 DrivableArea::DrivableArea(const RoadNetwork& network) {
@@ -139,7 +164,7 @@ DrivableArea::DrivableArea(const RoadNetwork& network) {
       levels_.back()->highest = height;
       continue;
     }
-    levels_.push_back(std::make_unique<Level>(height, outlineOf(network, pieces, chosen)));
+    levels_.push_back(std::make_unique<Level>(height, outlinesOf(network, pieces, chosen)));
     previous = std::move(chosen);
   }
 }
@@ -160,7 +185,7 @@ const DrivableArea::Level& DrivableArea::levelAt(double elevation) const {
 
 SignedDistance DrivableArea::signedDistanceWithGradient(const Eigen::Vector2d& position,
                                                         double elevation) const {
-  return levelAt(elevation).index.query(position);
+  return levelAt(elevation).border().index.query(position);
 }
 
 double DrivableArea::signedDistance(const Eigen::Vector2d& position, double elevation) const {
@@ -172,7 +197,7 @@ bool DrivableArea::contains(const Eigen::Vector2d& position, double elevation) c
 }
 
 std::vector<std::vector<Eigen::Vector2d>> DrivableArea::border(double elevation) const {
-  return levelAt(elevation).rings;
+  return levelAt(elevation).border().rings;
 }
 
 std::size_t DrivableArea::levelCount() const { return levels_.size(); }
