@@ -26,15 +26,15 @@ constexpr const char* kMatrix =
     "seeds: [2, 3]\n"
     "set: [protocol.time_limit=4, verdict.judge=false]\n";
 
-/// Processes whose command line holds a text.
-std::vector<pid_t> processesWith(const std::string& text) {
+/// Processes that print into a file below a folder: the sessions of a batch.
+std::vector<pid_t> processesIn(const std::string& folder) {
   std::vector<pid_t> found;
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const std::string name = entry.path().filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    std::ifstream file(entry.path() / "cmdline");
-    const std::string line((std::istreambuf_iterator<char>(file)), {});
-    if (line.find(text) != std::string::npos) found.push_back(std::stoi(name));
+    std::error_code gone;
+    const fs::path output = fs::read_symlink(entry.path() / "fd/1", gone);
+    if (output.string().rfind(folder + "/", 0) == 0) found.push_back(std::stoi(name));
   }
   return found;
 }
@@ -94,8 +94,8 @@ TEST_F(BatchRobustness, KilledAndResumedItGivesTheSameFiles) {
     process.signal(SIGKILL);  // its process alone: runs have groups of their own
     EXPECT_EQ(process.wait(), 128 + SIGKILL);
   }
-  for (int i = 0; i < 500 && !processesWith(resumed).empty(); ++i) pause();
-  EXPECT_TRUE(processesWith(resumed).empty()) << "runs outlive the batch";
+  for (int i = 0; i < 500 && !processesIn(resumed).empty(); ++i) pause();
+  EXPECT_TRUE(processesIn(resumed).empty()) << "runs outlive the batch";
   EXPECT_LT(completeRuns(resumed), 6U);
   ASSERT_EQ(cdiff({"evaluate", matrix, "--results", resumed, "--jobs", "2", "--resume"}), 0);
   expectOutput("runs were complete already");
@@ -153,7 +153,7 @@ TEST_F(BatchRobustness, RepeatsARunWhoseSumoWasKilled) {
                            scratch_.path() / "output");
   pid_t sumo = 0;
   while (sumo == 0 && !process.ended()) {
-    for (const pid_t run : processesWith(results + "/runs/arterial_exit")) sumo = sumoOf(run);
+    for (const pid_t run : processesIn(results + "/runs/arterial_exit")) sumo = sumoOf(run);
     if (sumo == 0) pause();
   }
   ASSERT_NE(sumo, 0) << output();
