@@ -12,8 +12,8 @@
 namespace cdiff::cli {
 namespace {
 
-/// Networks and models at a time: a batch turns through its scenarios and planners.
-constexpr std::size_t kKeptValues = 24;
+/// Networks, models and hashes at a time: a batch turns through its scenarios and planners.
+constexpr std::size_t kKeptValues = 32;
 
 /// What fails here fails in the child, whose log says so.
 core::ForkedRun prepared(const std::vector<std::string>& words) {

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/kept_content.h"
+#include "core/kept_hash.h"
 #include "core/spelling.h"
 #include "core/text.h"
 #include "diffusion/normalizer.h"
@@ -115,8 +116,8 @@ Model loadModel(const std::string& name_or_folder) {
 
 std::string modelFilesSha256(const std::string& name_or_folder) {
   const fs::path folder = folderOf(name_or_folder);
-  return core::sha256(core::sha256(core::readFile(folder / kEncoderFile, "weight file")) +
-                      core::sha256(core::readFile(folder / kDenoiserFile, "weight file")));
+  return core::sha256(core::keptSha256(folder / kEncoderFile, "weight file") +
+                      core::keptSha256(folder / kDenoiserFile, "weight file"));
 }
 
 std::shared_ptr<const Model> sharedModel(const std::string& name_or_folder) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/file.h"
+#include "core/kept_hash.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "inference/instruction_set.h"
@@ -66,7 +67,7 @@ std::filesystem::path weightFile(const WeightKind& kind, const std::filesystem::
 }
 
 std::string weightSha256(const WeightKind& kind, const std::filesystem::path& folder) {
-  return core::sha256(core::readFile(weightFile(kind, folder), "weight file"));
+  return core::keptSha256(weightFile(kind, folder), "weight file");
 }
 
 WeightTensors readWeights(const WeightKind& kind, const std::filesystem::path& folder,
