@@ -156,7 +156,12 @@ void World::recordFault(const std::string& source, const std::string& text) {
 }
 
 void World::end(SessionStatus status, const traffic::Fault& fault) {
-  if (snapshot_.status != SessionStatus::kRunning) return;
+  if (snapshot_.status != SessionStatus::kRunning) {
+    if (status != SessionStatus::kError) return;
+    snapshot_.status = status;
+    snapshot_.faults.push_back(fault);
+    return;
+  }
   snapshot_.tick += 1;
   snapshot_.time = static_cast<double>(snapshot_.tick) * setup_.options().simulation_step;
   snapshot_.decision_tick = false;

@@ -69,7 +69,8 @@ class World {
                const std::vector<planning::PlannedAction>& actions);
 
   /// Ends the session from outside (interrupted, a node that died): the next snapshot is the
-  /// present one with this status and fault.
+  /// present one with this status and fault. A session that has just come to its end by itself
+  /// takes an error as its status, and nothing else.
   void end(traffic::SessionStatus status, const traffic::Fault& fault);
   /// Where a vehicle that we take over starts to be driven, given its id and where the simulator
   /// had it.

@@ -61,6 +61,10 @@ std::string replayDeployment(const std::string& by, const ::e2e_cdiff::SessionIn
   return by + kRecordedBy + recorded.deployment + " of e2e_cdiff " + recorded.package_version;
 }
 
+bool isReplay(const ::e2e_cdiff::SessionInfo& info) {
+  return info.deployment.find(kRecordedBy) != std::string::npos;
+}
+
 record::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic) {
   record::RunFacts facts{info.deployment, info.simulator_version, deterministic};
   const std::size_t at = info.deployment.find(kRecordedBy);

@@ -23,6 +23,8 @@ std::size_t showTicks(RecordedSession& session,
 
 /// Deployment of a replayed session, for SessionInfo: who replays it, and who recorded it.
 std::string replayDeployment(const std::string& by, const ::e2e_cdiff::SessionInfo& recorded);
+/// Whether a session is a replayed one.
+bool isReplay(const ::e2e_cdiff::SessionInfo& info);
 /// What results say about a session, live or replayed.
 record::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic);
 

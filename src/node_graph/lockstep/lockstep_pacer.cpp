@@ -33,12 +33,19 @@ std::vector<Missing> LockstepPacer::missingAnswers() const {
   return missing;
 }
 
+/// Observers may lag, so that a tick that costs them more holds up nothing.
 std::vector<Missing> LockstepPacer::missingAtTick() const {
   std::vector<Missing> missing = missingAnswers();
-  for (const std::string& node : session_.participants.notAcknowledged(published_->tick)) {
-    missing.push_back(
-        {node, node + "'s acknowledgement of tick " + std::to_string(published_->tick)});
-  }
+  if (published_->tick < kMostLag) return missing;
+  for (Missing& node : unacknowledged(published_->tick - kMostLag))
+    missing.push_back(std::move(node));
+  return missing;
+}
+
+std::vector<Missing> LockstepPacer::unacknowledged(std::uint64_t tick) const {
+  std::vector<Missing> missing;
+  for (const std::string& node : session_.participants.notAcknowledged(tick))
+    missing.push_back({node, node + "'s acknowledgement of tick " + std::to_string(tick)});
   return missing;
 }
 
@@ -51,6 +58,11 @@ std::optional<SessionEnd> LockstepPacer::wait() {
     close();
   }
   return session_.watch.waitFor([this] { return missingAtTick(); }, session_.answer_limit, again);
+}
+
+std::optional<SessionEnd> LockstepPacer::waitForObservers() {
+  return session_.watch.waitFor([this] { return unacknowledged(published_->tick); },
+                                session_.answer_limit);
 }
 
 /// A node of the user may connect while the first snapshot is sent; it gets the same snapshot

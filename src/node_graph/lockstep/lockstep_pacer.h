@@ -9,8 +9,8 @@
 
 namespace cdiff::node_graph {
 
-/// The world goes on when every answer and every acknowledgement that the tick needs is here,
-/// however long that takes within the limit.
+/// The world goes on when every answer that the tick needs is here and no observer is more than
+/// kMostLag ticks behind, however long that takes within the limit.
 class LockstepPacer : public Pacer {
  public:
   using Pacer::Pacer;
@@ -18,11 +18,13 @@ class LockstepPacer : public Pacer {
   void published(const Snapshot& snapshot) override;
   std::optional<SessionEnd> wait() override;
   TickInput advance() override;
+  std::optional<SessionEnd> waitForObservers() override;
   void close() override;
 
  private:
   std::vector<Missing> missingAnswers() const;
   std::vector<Missing> missingAtTick() const;
+  std::vector<Missing> unacknowledged(std::uint64_t tick) const;
   void sendAgainForLateListener();
 
   Clock::time_point published_at_;

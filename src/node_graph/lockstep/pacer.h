@@ -72,6 +72,8 @@ class Pacer {
   virtual std::optional<SessionEnd> wait() = 0;
   /// What moves the world now; called once a tick, after `wait`.
   virtual TickInput advance() = 0;
+  /// The world has come to its end: waits until the observers have all that came before it.
+  virtual std::optional<SessionEnd> waitForObservers() { return std::nullopt; }
   /// The session ends: decisions close with what has come.
   virtual void close() = 0;
   /// Answers that came late or never.

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "core/text.h"
+#include "node_graph/bags/replay.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
@@ -139,6 +140,7 @@ int Participant::runSession() {
   openDiagnostics();
   const session::ScenarioOptions options = optionsFromMsg(*session_);
   simulation_step_ = options.simulation_step;
+  lag_ = graph_.paced || isReplay(*session_) ? 0 : kMostLag;
   lead_ = static_cast<std::uint64_t>(
       std::llround((options.decision_period + kLead) / simulation_step_));
   traffic_input_ = gate_.subscribe<msgs::TrafficSnapshot>(
@@ -170,14 +172,25 @@ void Participant::queue(const Snapshot& snapshot) {
   gate_.setNewestTick(snapshot->tick + lead_, simulation_step_);
   arrived(*snapshot);
   snapshots_.push_back(snapshot);
+  changed_at_ = ros::SteadyTime::now();
+}
+
+/// Whether nothing more comes of the oldest snapshot: the simulator, which waits for the answers to
+/// it, would not have gone on so far, or has ended the session.
+bool Participant::superseded() const {
+  constexpr double kOnTheirWay = 0.5;  // [s] of wall time for messages at the end of a session
+  if (snapshots_.size() < 2 || leavesOut()) return false;
+  if (snapshots_.back()->tick - snapshots_.front()->tick > lag_) return true;
+  return ended() && secondsSince(changed_at_) > kOnTheirWay;
 }
 
 /// Returns whether the last snapshot of the session has been handled.
 bool Participant::handleQueue() {
   if (leavesOut()) leaveOutdatedOut();
-  while (!snapshots_.empty() && handle(snapshots_.front(), snapshots_.size() > 1 && !leavesOut())) {
+  while (!snapshots_.empty() && handle(snapshots_.front(), superseded())) {
     final_handled_ = snapshots_.front()->status != msgs::TrafficSnapshot::RUNNING;
     snapshots_.pop_front();
+    changed_at_ = ros::SteadyTime::now();
   }
   return final_handled_;
 }
@@ -190,9 +203,7 @@ void Participant::leaveOutdatedOut() {
     return one->decision_tick && ready(*one);
   });
   if (newest != snapshots_.rend()) snapshots_.erase(snapshots_.begin(), newest.base() - 1);
-  const bool last =
-      !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
-  if (last) snapshots_.erase(snapshots_.begin(), snapshots_.end() - 1);
+  if (ended()) snapshots_.erase(snapshots_.begin(), snapshots_.end() - 1);
   while (snapshots_.size() > kMost) snapshots_.pop_front();
 }
 
@@ -226,9 +237,7 @@ int Participant::fail(const std::string& text) {
   while (ros::ok() && !simulatorGone() && ros::SteadyTime::now() < limit) {
     publishAck(msgs::TickAck::ERROR, lastTick(), text);
     spin();
-    const bool ended =
-        !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
-    if (ended) break;
+    if (ended()) break;
   }
   return core::ExitCode::kRunTimeError;
 }

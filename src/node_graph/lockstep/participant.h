@@ -54,8 +54,8 @@ class Participant {
   virtual std::string waitingFor() const { return {}; }
   /// A snapshot has come, in the order of ticks; it may be handled later or left out.
   virtual void arrived(const ::e2e_cdiff::TrafficSnapshot&) {}
-  /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot
-  /// is there, nothing more will come.
+  /// Handles the oldest snapshot; false when it needs more messages. `superseded`: nothing more of
+  /// it will come.
   virtual bool handle(const Snapshot& snapshot, bool superseded) = 0;
   /// Whether all that this decision needs is here; asked where decisions may be left out.
   virtual bool ready(const ::e2e_cdiff::TrafficSnapshot&) const { return true; }
@@ -94,6 +94,11 @@ class Participant {
     publishAck(::e2e_cdiff::TickAck::FAULT, lastTick(), text);
   }
   const SessionGraph& graph() const { return graph_; }
+  /// Whether the last snapshot of the session has come.
+  bool ended() const {
+    return !snapshots_.empty() &&
+           snapshots_.back()->status != ::e2e_cdiff::TrafficSnapshot::RUNNING;
+  }
   /// Whether no message will come any more.
   bool over() const { return over_; }
   /// For publishers that advertise() does not make.
@@ -114,6 +119,7 @@ class Participant {
   int fail(const std::string& text);
   void queue(const Snapshot& snapshot);
   bool handleQueue();
+  bool superseded() const;
   void leaveOutdatedOut();
   void report();
   std::string missing() const;
@@ -139,6 +145,8 @@ class Participant {
   std::uint64_t next_tick_ = 0;    ///< snapshots before it were seen
   double simulation_step_ = 0.05;  ///< [s]
   std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
+  std::uint64_t lag_ = 0;          ///< ticks of which messages may still be on their way
+  ros::SteadyTime changed_at_;     ///< when a snapshot last came or was handled
   ros::SteadyTime began_ = ros::SteadyTime::now();
   ros::SteadyTime stopped_at_;   ///< when the stop signal was seen
   ros::SteadyTime reported_at_;  ///< when this node last said how it stands

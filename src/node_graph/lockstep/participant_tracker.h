@@ -59,6 +59,10 @@ class SilenceWatch {
   double last_look_ = 0.0;
 };
 
+/// Ticks that metrics and recorder may be behind a traffic simulator that waits for answers. Enough
+/// that one slow tick of theirs, such as the writing of a chunk of the bag, holds up nothing.
+inline constexpr std::uint64_t kMostLag = 20;
+
 /// What the traffic simulator knows about the other nodes from their TickAck messages: ready, last
 /// tick acknowledged, finished, in error, when last heard.
 class ParticipantTracker {

@@ -297,10 +297,8 @@ void TrafficSimulatorNode::runTicks() {
   while (world_->snapshot().status == SessionStatus::kRunning) {
     std::optional<SessionEnd> end = pacer_->wait();
     if (!end) end = holdBack();
-    if (end)
-      endSession(*end);
-    else
-      advance();
+    if (!end) end = advance();
+    if (end) endSession(*end);
     publishTick();
   }
 }
@@ -353,12 +351,14 @@ void TrafficSimulatorNode::addTotals(msgs::TrafficSnapshot& message) const {
 
 /// Moves the world to the next tick. An ego that came to stand after a node was last heard may
 /// brake for want of that node: it is not blocked before the node answers again; otherwise its
-/// silence ends the session.
-void TrafficSimulatorNode::advance() {
+/// silence ends the session. Returns what an observer lacks of a session that has come to its end.
+std::optional<SessionEnd> TrafficSimulatorNode::advance() {
   const TickInput input = pacer_->advance();
   const std::optional<double> since = world_->egoStandsSince();
   world_->withholdBlocked(since && pacer_->silentFor(world_->snapshot().time - *since));
   world_->advance(input.selection ? &*input.selection : nullptr, input.actions);
+  if (world_->snapshot().status == SessionStatus::kRunning) return std::nullopt;
+  return pacer_->waitForObservers();
 }
 
 void TrafficSimulatorNode::endSession(const SessionEnd& end) {

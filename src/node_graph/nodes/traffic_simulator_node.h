@@ -66,7 +66,7 @@ class TrafficSimulatorNode {
   std::optional<SessionEnd> holdBack();
   void publishTick();
   void addTotals(::e2e_cdiff::TrafficSnapshot& message) const;
-  void advance();
+  std::optional<SessionEnd> advance();
   void endSession(const SessionEnd& end);
   void waitForResult();
   void writeResultAlone();
