@@ -90,6 +90,20 @@ std::optional<std::uint64_t> tickOf(const AnyMessage& any, double simulation_ste
   return std::nullopt;
 }
 
+/// A message as a bag holds it: without the number that a connection between processes gave it.
+template <class Message>
+boost::shared_ptr<const Message> unnumbered(const AnyMessage& any) {
+  const auto message = messageAs<Message>(any);
+  if constexpr (HasHeader<Message>::value) {
+    if (message->header.seq != 0) {
+      Message copy = *message;
+      copy.header.seq = 0;
+      return shared(std::move(copy));
+    }
+  }
+  return message;
+}
+
 template <class Message>
 std::optional<int> slotOf(const AnyMessage& any) {
   if constexpr (HasSlot<Message>::value) return static_cast<const Message*>(any.get())->slot;
@@ -106,7 +120,9 @@ const MessageType& messageType() {
       ros::message_traits::MD5Sum<Message>::value(),
       [](const BagMessage& message) -> AnyMessage { return decode<Message>(message); },
       [](rosbag::Bag& bag, const std::string& topic, const ros::Time& stamp,
-         const AnyMessage& message) { bag.write(topic, stamp, messageAs<Message>(message)); },
+         const AnyMessage& message) {
+        bag.write(topic, stamp, detail::unnumbered<Message>(message));
+      },
       [](Connections& connections, ros::NodeHandle& node, const std::string& topic,
          const std::vector<std::string>& nodes,
          bool latched) { return connections.advertise<Message>(node, topic, nodes, latched); },

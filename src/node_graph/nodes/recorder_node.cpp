@@ -33,16 +33,17 @@ std::string RecorderNode::waitingFor() const {
   return has_route_ ? "" : "no ego route has come yet";
 }
 
-/// Whether the metrics of a tick are here, too.
+/// Whether the metrics of a tick are here, too, or will never be. A metrics node that has once kept
+/// the end of a session waiting is not waited for again before it reports.
 bool RecorderNode::measured(const msgs::TrafficSnapshot& snapshot, bool superseded) {
-  if (over()) return true;
   const bool final = snapshot.status != msgs::TrafficSnapshot::RUNNING;
-  if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) ||
-      answers().has(ChannelId::kMetrics, snapshot.tick))
+  const bool reported = answers().has(ChannelId::kMetrics, snapshot.tick);
+  if (reported) waiting_since_ = {};
+  if (over() || reported || !graph().has(kMetricsNode) || (!snapshot.decision_tick && !final))
     return true;
   if (waiting_since_.isZero()) waiting_since_ = ros::SteadyTime::now();
-  return (final || superseded) &&
-         (ros::SteadyTime::now() - waiting_since_).toSec() > kReportPatience;
+  const bool may_be_lost = ended() || (superseded && graph().paced);
+  return may_be_lost && (ros::SteadyTime::now() - waiting_since_).toSec() > kReportPatience;
 }
 
 bool RecorderNode::handle(const Snapshot& snapshot, bool superseded) {
@@ -52,18 +53,22 @@ bool RecorderNode::handle(const Snapshot& snapshot, bool superseded) {
   if (!measured(*snapshot, superseded)) return false;
   TickMessages messages = answers().messages(snapshot->tick);
   messages.add(ChannelId::kTraffic, snapshot);
-  bag_->write(messages);
-  ++written_;
+  if (!queue_) queue_ = std::make_unique<BagQueue>(*bag_);
+  queue_->write(messages);
   forgetUntil(snapshot->tick);
-  waiting_since_ = {};
   return true;
 }
 
 void RecorderNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  status.add("ticks written", written_);
+  const BagQueue::Load load = queue_ ? queue_->load() : BagQueue::Load();
+  status.add("ticks written", load.written);
+  status.add("ticks that wait for the disk", load.waiting);
+  status.add("most ticks that waited for the disk", load.most_waiting);
+  status.add("ticks that found the queue full", load.full);
 }
 
 int RecorderNode::conclude(Ending ending) {
+  if (queue_) queue_->finish();
   bag_->finish();
   const bool lost = ending == Ending::kSimulatorGone || ending == Ending::kSimulatorSilent;
   return lost ? core::ExitCode::kRunTimeError : core::ExitCode::kPassed;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "node_graph/bags/session_bag_writer.h"
+#include "node_graph/bags/bag_queue.h"
 #include "node_graph/lockstep/participant.h"
 
 namespace cdiff::node_graph {
@@ -29,9 +29,9 @@ class RecorderNode : public Observer {
   bool measured(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
 
   std::unique_ptr<BagFile> bag_;
+  std::unique_ptr<BagQueue> queue_;  ///< from the first tick on
   bool has_route_ = false;
   std::optional<std::uint64_t> acknowledged_;  ///< last tick
-  std::uint64_t written_ = 0;                  ///< ticks
   ros::SteadyTime waiting_since_;
 };
 

@@ -16,28 +16,29 @@
 namespace cdiff::node_graph {
 namespace {
 
-constexpr std::uint32_t kQueueSize = 100;
+constexpr std::uint32_t kSceneQueueSize = 100;
 
 }  // namespace
 
 int SceneNode::run() {
   using visualization_msgs::MarkerArray;
   const auto name = [](ChannelId id) { return Topic(id).name(); };
-  markers_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMarkers), kQueueSize);
+  markers_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMarkers), kSceneQueueSize);
   map_output_ = node_.advertise<MarkerArray>(name(ChannelId::kMapMarkers), 1, true);
-  rollouts_output_ = node_.advertise<MarkerArray>(name(ChannelId::kRolloutMarkers), kQueueSize);
-  view_output_ = node_.advertise<sensor_msgs::Image>(name(ChannelId::kFrontView), kQueueSize);
+  rollouts_output_ =
+      node_.advertise<MarkerArray>(name(ChannelId::kRolloutMarkers), kSceneQueueSize);
+  view_output_ = node_.advertise<sensor_msgs::Image>(name(ChannelId::kFrontView), kSceneQueueSize);
   const auto at_once = ros::TransportHints().tcpNoDelay();
   const ros::Subscriber inputs[] = {
       node_.subscribe<msgs::SessionInfo>(
           name(ChannelId::kSession), 1,
           [this](const msgs::SessionInfo::ConstPtr& info) { takeSession(*info); }, {}, at_once),
       node_.subscribe<msgs::CbvSelection>(
-          name(ChannelId::kSelection), kQueueSize,
+          name(ChannelId::kSelection), kSceneQueueSize,
           [this](const msgs::CbvSelection::ConstPtr& selection) { takeSelection(selection); }, {},
           at_once),
       node_.subscribe<msgs::TrafficSnapshot>(
-          name(ChannelId::kTraffic), kQueueSize,
+          name(ChannelId::kTraffic), kSceneQueueSize,
           [this](const msgs::TrafficSnapshot::ConstPtr& snapshot) { takeTraffic(*snapshot); }, {},
           at_once)};
   while (!stop_.raised() && ros::ok()) spin(kSpinPeriod);
@@ -63,7 +64,7 @@ void SceneNode::listenToRollouts() {
   rollouts_.clear();
   for (int slot = 0; slot < setup_->options().max_cbv; ++slot) {
     rollouts_.push_back(node_.subscribe<msgs::Rollout>(
-        Topic(ChannelId::kCbvRollout, slot).name(), kQueueSize,
+        Topic(ChannelId::kCbvRollout, slot).name(), kSceneQueueSize,
         [this](const msgs::Rollout::ConstPtr& rollout) { takeRollout(*rollout); }, {},
         ros::TransportHints().tcpNoDelay()));
   }
