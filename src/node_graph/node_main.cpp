@@ -3,16 +3,20 @@
 #include "node_graph/node_main.h"
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <future>
+#include <iostream>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "core/program.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/messages/topics.h"
 #include "node_graph/nodes/camera_node.h"
@@ -93,6 +97,71 @@ int runNode(int argc, char** argv, const char* name) {
 }
 
 }  // namespace
+
+namespace {
+
+template <class Node>
+int runBody(StopSignal& stop) {
+  return Node(stop).run();
+}
+
+using NodeBody = int (*)(StopSignal&);
+
+NodeBody bodyOf(const std::string& kind) {
+  static const std::map<std::string, NodeBody> bodies = {
+      {kTrafficSimulatorNode, runTrafficSimulator},
+      {kCbvIdentificationNode, runBody<CbvIdentificationNode>},
+      {kCameraNode, runBody<CameraNode>},
+      {kEgoPlannerNode, runBody<EgoPlannerNode>},
+      {kCbvPlannerNode, runBody<CbvPlannerNode>},
+      {kDiffusionPlannerNode, runBody<CbvPlannerNode>},
+      {kMetricsNode, runBody<MetricsNode>},
+      {kRecorderNode, runBody<RecorderNode>}};
+  const auto found = bodies.find(kind);
+  if (found == bodies.end()) throw std::logic_error("no node of a session is called " + kind);
+  return found->second;
+}
+
+/// Waits for the simulator, then for the others to finish their files.
+int waitForHostedNodes() {
+  constexpr double kPatience = 10.0;  // [s] for who may hang
+  while (!hostedExitCode(kTrafficSimulatorNode)) ros::WallDuration(kSpinPeriod).sleep();
+  const auto begin = std::chrono::steady_clock::now();
+  while (!allHostedNodesLeft() && secondsSince(begin) < kPatience)
+    ros::WallDuration(kSpinPeriod).sleep();
+  return *hostedExitCode(kTrafficSimulatorNode);
+}
+
+}  // namespace
+
+int runHostedNode(const std::string& kind, const std::string& name, StopSignal& stop) {
+  HostedNode node(name);
+  const int exit_code = runGuarded(bodyOf(kind), stop);
+  node.setExitCode(exit_code);
+  return exit_code;
+}
+
+int runNodeletManager(int argc, char** argv, const LoadNodelet& load) {
+  core::prepareProgram();
+  const StopSignal stop;  // blocks the signals, for the nodes to ask for
+  ros::init(argc, argv, "session_nodelets", ros::init_options::NoSigintHandler);
+  if (!ros::master::check()) return MetricsNode::runWithoutMaster();
+  ros::master::setRetryTimeout(ros::WallDuration(kMasterPatience));
+  ros::start();
+  ros::AsyncSpinner services(1);  // of the loader
+  services.start();
+  bool loaded = true;
+  for (int i = 1; loaded && i < argc; ++i) {
+    const std::string kind = argv[i];
+    loaded = load(kind, ros::names::append(ros::this_node::getNamespace(), kind + "_node"));
+    ROS_FATAL_COND(!loaded, "cannot load the nodelet e2e_cdiff/%s (above)", kind.c_str());
+  }
+  const int exit_code = loaded ? waitForHostedNodes() : core::ExitCode::kRunTimeError;
+  ros::shutdown();
+  std::cout.flush();
+  std::fflush(nullptr);
+  std::_Exit(exit_code);  // a node that hangs would hold up the end of its objects
+}
 
 bool masterAnswers() {
   auto promise = std::make_shared<std::promise<bool>>();

@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <functional>
+#include <string>
+
 namespace cdiff::node_graph {
 
 // The main functions of the nodes: signals, ROS under the node's default name, plug-ins, the node,
@@ -28,6 +31,19 @@ int runRecorderNode(int argc, char** argv);
 int runReplayNode(int argc, char** argv);
 /// Makes markers of what rosbag play publishes.
 int runSceneNode(int argc, char** argv);
+
+class StopSignal;
+
+/// Runs a node of a session in this thread, beside others of the same process, and returns its exit
+/// code. `kind` is its name without namespace ("metrics_node"), `name` the full one. Throws
+/// std::logic_error for a kind that there is not.
+int runHostedNode(const std::string& kind, const std::string& name, StopSignal& stop);
+
+/// Loads a nodelet of a kind ("metrics") under a full name; returns whether it could.
+using LoadNodelet = std::function<bool(const std::string& kind, const std::string& name)>;
+/// The main function of a process that hosts all nodes of a session: loads the kinds that its
+/// arguments name, waits until they have left, and ends with the simulator's exit code.
+int runNodeletManager(int argc, char** argv, const LoadNodelet& load);
 
 /// Whether the ROS master answers within two seconds.
 bool masterAnswers();

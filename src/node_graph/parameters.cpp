@@ -36,7 +36,7 @@ std::string textOf(const std::string& key, XmlRpc::XmlRpcValue value) {
 }  // namespace
 
 Parameters Parameters::ofThisNode() {
-  const Parameters parameters = of(ros::this_node::getName());
+  const Parameters parameters = of(nodeName());
   if (parameters.empty() && !ros::master::check())
     throw std::runtime_error("the ROS master at " + ros::master::getURI() +
                              " does not answer any more");

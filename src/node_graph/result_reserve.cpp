@@ -3,6 +3,7 @@
 #include "node_graph/result_reserve.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 #include <utility>
 
@@ -111,6 +112,15 @@ bool ResultReserve::adopt(const msgs::TrafficSnapshot::ConstPtr& end, double wal
   return true;
 }
 
+void ResultReserve::handOver(const msgs::TrafficSnapshot::ConstPtr& end) {
+  keep(end, TickAnswers());
+  try {
+    if (bag_) bag_->finish();
+  } catch (const core::InputError&) {
+    // On a full disk. What is there may still be read.
+  }
+}
+
 int ResultReserve::replay(RecordedSession& session, double wall_seconds) {
   page::ResultWriter writer(session.setup(), facts_, results_.path());
   ToleratedWriter tolerated(writer);
@@ -180,15 +190,46 @@ class AbandonedTicks : public session::SessionObserver {
   traffic::TrafficSnapshot last_;
 };
 
-/// nullptr where there is none that can be read.
-std::unique_ptr<RecordedSession> openReserve(const fs::path& results) {
-  const fs::path bag = results / kReserve / (std::string(kBag) + ".active");
-  if (!holdsReserve(results) || !core::isFile(bag)) return nullptr;
+/// What a simulator left: whole, or as it was written when its process ended.
+std::optional<fs::path> reservedBag(const fs::path& results) {
+  for (const std::string& name : {std::string(kBag), std::string(kBag) + ".active"}) {
+    const fs::path bag = results / kReserve / name;
+    std::error_code none;
+    if (fs::is_regular_file(bag, none)) return bag;
+  }
+  return std::nullopt;
+}
+
+/// nullptr where nothing of it can be read.
+std::unique_ptr<RecordedSession> readableSession(const fs::path& bag) {
   try {
     return std::make_unique<RecordedSession>(bag, RecordedImages::kAll);
   } catch (const core::InputError&) {
     return nullptr;
   }
+}
+
+/// [s] of wall time from the beginning of a result to the last tick in its reserve; 0 where the
+/// metrics node had not begun.
+double drivingTime(const fs::path& results, const fs::path& bag) {
+  std::error_code none;
+  const auto begin = fs::last_write_time(results / "session.yaml", none);
+  if (none) return 0.0;
+  return std::max(0.0, std::chrono::duration<double>(fs::last_write_time(bag) - begin).count());
+}
+
+/// A snapshot as it was recorded; the end that a recording lacks is this one.
+msgs::TrafficSnapshot endedBy(msgs::TrafficSnapshot snapshot, traffic::SessionStatus status,
+                              const traffic::Fault& fault) {
+  const bool cut_off = snapshot.status == msgs::TrafficSnapshot::INTERRUPTED &&
+                       !snapshot.faults.empty() && snapshot.faults.back().source == kBagSource;
+  if (!cut_off) return snapshot;
+  traffic::TrafficSnapshot end = fromMsg(snapshot);
+  end.status = status;
+  end.faults.push_back({end.tick, fault.source, fault.text});
+  msgs::TrafficSnapshot message = node_graph::toMsg(end);
+  message.late_answers = snapshot.late_answers;
+  return message;
 }
 
 }  // namespace
@@ -197,7 +238,8 @@ std::string writeAbandonedResult(const session::SessionSetup& setup, const fs::p
                                  const AbandonedSession& session) {
   core::OutputFolder folder(results);
   folder.removeUnfinished();
-  const std::unique_ptr<RecordedSession> recorded = openReserve(results);
+  const auto bag = holdsReserve(results) ? reservedBag(results) : std::nullopt;
+  const auto recorded = bag ? readableSession(*bag) : nullptr;
   const std::string simulator = recorded ? recorded->info().simulator_version : "unknown";
   page::ResultWriter writer(setup, {"cdiff run", simulator, true}, results);
   AbandonedTicks ticks(writer);
@@ -206,6 +248,29 @@ std::string writeAbandonedResult(const session::SessionSetup& setup, const fs::p
   writer.finish(session.wall_seconds);
   removeReserve(folder);
   return writer.table();
+}
+
+std::optional<int> writeReservedResult(const fs::path& results, traffic::SessionStatus status,
+                                       const traffic::Fault& fault) {
+  const std::optional<fs::path> bag = reservedBag(results);
+  if (!bag) return std::nullopt;
+  const double wall_seconds = drivingTime(results, *bag);
+  core::OutputFolder folder(results, "scripts/session");
+  const auto session = readableSession(*bag);
+  auto message = session ? session->next() : nullptr;
+  if (!message) return std::nullopt;
+  folder.removeUnfinished();
+  const bool deterministic = session->setup().options().real_time_factor == 0.0;
+  page::ResultWriter writer(session->setup(), factsOf(session->info(), deterministic), results);
+  ToleratedWriter tolerated(writer);
+  for (; message; message = session->next()) {
+    const auto snapshot = endedBy(*message, status, fault);
+    tolerated.observe(
+        TickRecordView(snapshot, session->answers(), session->setup().network()).record());
+  }
+  const int exit_code = finishResult(writer, wall_seconds);
+  removeReserve(folder);
+  return exit_code;
 }
 
 }  // namespace cdiff::node_graph

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/output_folder.h"
@@ -39,6 +40,8 @@ class ResultReserve {
   /// meanwhile (file exit_code). Returns whether it wrote. Throws InputError when not even a
   /// summary can be written.
   bool adopt(const ::e2e_cdiff::TrafficSnapshot::ConstPtr& end, double wall_seconds);
+  /// Leaves what was kept, with the session's end, to writeReservedResult() of another process.
+  void handOver(const ::e2e_cdiff::TrafficSnapshot::ConstPtr& end);
 
  private:
   void giveUp(const std::string& why);
@@ -87,5 +90,12 @@ bool holdsReserve(const std::filesystem::path& results);
 std::string writeAbandonedResult(const session::SessionSetup& setup,
                                  const std::filesystem::path& results,
                                  const AbandonedSession& session);
+
+/// Writes the result of a session whose simulator died with its process, from what that kept in
+/// RESULTS/.reserve, prints its table and returns its exit code. A session that was running then
+/// gets this end. Returns nullopt, and leaves everything as it is, where no tick was kept. Throws
+/// InputError when not even a summary can be written.
+std::optional<int> writeReservedResult(const std::filesystem::path& results,
+                                       traffic::SessionStatus status, const traffic::Fault& fault);
 
 }  // namespace cdiff::node_graph

@@ -15,6 +15,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/node_process.h"
+#include "node_graph/result_reserve.h"
 #include "page/result_writer.h"
 #include "record/result_folder.h"
 #include "ros/ros.h"
@@ -63,6 +64,15 @@ fs::path askedFolder(const Parameters& parameters) {
   return text.empty() ? fs::path() : fs::absolute(text).lexically_normal();
 }
 
+/// The exit code of a session of this launch whose simulator left its ticks to others.
+std::optional<int> reservedResult(const fs::path& folder, traffic::SessionStatus status,
+                                  const traffic::Fault& fault) {
+  if (folder.empty() || !writtenByThisLaunch(folder / ".reserve")) return std::nullopt;
+  const std::optional<int> exit_code = writeReservedResult(folder, status, fault);
+  if (exit_code) writeExitCode(folder, *exit_code);
+  return exit_code;
+}
+
 int writeUnstarted(const session::ScenarioOptions& options, const fs::path& folder,
                    traffic::SessionStatus status, const traffic::Fault& fault) {
   const session::SessionSetup setup(options);
@@ -100,6 +110,7 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
     const bool replaces = status == traffic::SessionStatus::kInterrupted;
     if (!folder.empty() && !replaces && writtenByThisLaunch(folder / "exit_code"))
       return core::ExitCode::kRunTimeError;
+    if (const auto exit_code = reservedResult(folder, status, fault)) return *exit_code;
     requireHeededLaunchArguments();  // else it would be the result of another session than was
                                      // meant
     const auto options = requestedScenario(parameters);

@@ -35,8 +35,9 @@ void writeRefusal(const std::filesystem::path& folder);
 /// here. Throws InputError when there is no such folder.
 void enterFolder(const std::string& folder);
 
-/// Writes the result of a session that ended before its first snapshot, which its simulator was to
-/// run with these parameters, and returns the exit code of `cdiff`. A result (file exit_code) that
+/// Writes the result of a session that its nodes left without one, which its simulator was to run
+/// with these parameters, and returns the exit code of `cdiff`. It is made of the ticks that the
+/// simulator kept, where its process died; else it has none. A result (file exit_code) that
 /// this launch has already written stays, unless the session was interrupted. Bad input is reported
 /// in one line, with exit code 3.
 int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,

@@ -25,6 +25,21 @@ TEST_F(LockstepPacerTest, GoesOnWhenAnswersAreHere) {
 }
 
 // Tick 25 needs the acknowledgement of tick 5, 20 ticks before it.
+TEST_F(LockstepPacerTest, CountsWaitsForAnswersToTheTickThatStands) {
+  using std::chrono::milliseconds;
+  const AnswerWaits::Clock::time_point begin;
+  AnswerWaits waits;
+  waits.published(4, begin);
+  waits.arrived(ChannelId::kSelection, 4, begin + milliseconds(2));
+  waits.arrived(controlOf(0), 4, begin + milliseconds(5));
+  waits.arrived(controlOf(1), 4, begin + milliseconds(7));  // the same channel: 6 ms in the mean
+  waits.published(6, begin + milliseconds(10));
+  waits.arrived(ChannelId::kSelection, 6, begin + milliseconds(14));
+  waits.arrived(ChannelId::kSelection, 4, begin + milliseconds(19));  // late
+  const std::map<std::string, double> expected = {{"cbv_K_control", 6.0}, {"cbv_selection", 3.0}};
+  EXPECT_EQ(waits.means(), expected);
+}
+
 TEST_F(LockstepPacerTest, NamesTheObserverThatIsTooFarBehind) {
   LockstepPacer& pacer = make<LockstepPacer>(test::sampleOptions());
   pacer.published(snapshotAt(25));

@@ -108,6 +108,67 @@ TEST(ResultReserve, ReplaysTheResultThatAWriterHadMade) {
               core::readFile(folder.path() / "written" / file, "file"));
 }
 
+/// Two results of a session whose process ended: of all that its simulator had kept, and of the
+/// most of that.
+class ReservedResult : public ::testing::Test {
+ protected:
+  ReservedResult() : setup_(session::resolveRequest(shortSession())) {
+    ResultReserve reserve(setup_, infoOf(setup_, kept()));
+    session::ClosedLoop loop(setup_);
+    page::ResultWriter writer(setup_, {"test", "SUMO", true}, written());
+    Feeder feeder(setup_, reserve);
+    loop.addObserver(writer);
+    loop.addObserver(feeder);
+    const std::atomic<bool> never{false};
+    loop.run(never);
+    writer.finish(1.0);
+    exit_code_ = writer.exitCode();
+    reserve.handOver(feeder.last());
+    fs::copy(kept(), left(), fs::copy_options::recursive);
+  }
+
+  fs::path kept() const { return folder_.path() / "kept"; }
+  fs::path written() const { return folder_.path() / "written"; }
+  fs::path left() const { return folder_.path() / "left"; }
+  std::optional<int> writeLeft() const {
+    return writeReservedResult(left(), traffic::SessionStatus::kError,
+                               {0, "session_nodelets", "it crashed"});
+  }
+
+  const test::TemporaryFolder folder_;
+  const session::SessionSetup setup_;
+  int exit_code_ = 0;  ///< of the writer
+};
+
+TEST_F(ReservedResult, IsTheOneThatAWriterHadMade) {
+  EXPECT_EQ(writeLeft(), exit_code_);
+  EXPECT_FALSE(fs::exists(left() / ".reserve"));
+  nlohmann::json summary = withoutWallClock(summaryIn(left()));
+  summary.erase("real_time_factor_reason");  // no session.yaml says when it began
+  EXPECT_EQ(summary, withoutWallClock(summaryIn(written())));
+  EXPECT_EQ(core::readFile(left() / "trace.csv", "file"),
+            core::readFile(written() / "trace.csv", "file"));
+}
+
+TEST_F(ReservedResult, EndsWhereTheRecordDoesAndNamesWhy) {
+  const fs::path bag = left() / ".reserve" / "session.bag";
+  fs::resize_file(bag, 3 * fs::file_size(bag) / 4);
+  EXPECT_EQ(writeLeft(), 2);
+  const nlohmann::json summary = summaryIn(left());
+  EXPECT_EQ(summary["status"], "error");
+  EXPECT_GT(summary["simulated_seconds"], 0.0);
+  EXPECT_LT(summary["simulated_seconds"], 2.0);
+  EXPECT_EQ(summary["faults"].back()["source"], "session_nodelets");
+  EXPECT_EQ(summary["faults"].back()["text"], "it crashed");
+}
+
+TEST_F(ReservedResult, NeedsATick) {
+  fs::resize_file(left() / ".reserve" / "session.bag", 0);
+  EXPECT_EQ(writeLeft(), std::nullopt);
+  fs::remove(left() / ".reserve" / "session.bag");
+  EXPECT_EQ(writeLeft(), std::nullopt);
+}
+
 msgs::TrafficSnapshot::ConstPtr brokenEnd(std::uint64_t tick) {
   traffic::TrafficSnapshot snapshot;
   snapshot.tick = tick;

@@ -15,9 +15,14 @@ constexpr double kSendAgainAfter =
 
 }  // namespace
 
+void LockstepPacer::take(const Topic& topic, const AnyMessage& message) {
+  waits_.arrived(topic, answers_.add(topic, message));
+}
+
 void LockstepPacer::published(const Snapshot& snapshot) {
   published_ = snapshot;
   published_at_ = Clock::now();
+  waits_.published(snapshot->tick, published_at_);
   recorded_ = !snapshot->decision_tick || !session_.graph.recordsDecisions();
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "node_graph/lockstep/answer_waits.h"
 #include "node_graph/lockstep/pacer.h"
 
 namespace cdiff::node_graph {
@@ -15,11 +16,13 @@ class LockstepPacer : public Pacer {
  public:
   using Pacer::Pacer;
 
+  void take(const Topic& topic, const AnyMessage& message) override;
   void published(const Snapshot& snapshot) override;
   std::optional<SessionEnd> wait() override;
   TickInput advance() override;
   std::optional<SessionEnd> waitForObservers() override;
   void close() override;
+  std::map<std::string, double> waits() const override { return waits_.means(); }
 
  private:
   std::vector<Missing> missingAnswers() const;
@@ -27,6 +30,7 @@ class LockstepPacer : public Pacer {
   std::vector<Missing> unacknowledged(std::uint64_t tick) const;
   void sendAgainForLateListener();
 
+  AnswerWaits waits_;
   Clock::time_point published_at_;
   bool recorded_ = true;  ///< whether the record of the current decision was published
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {
@@ -11,6 +12,7 @@ namespace cdiff::node_graph {
 std::string baseName(const std::string& node) { return node.substr(node.rfind('/') + 1); }
 
 void Connections::expect(const std::string& topic, const std::vector<std::string>& nodes) {
+  if (hostsNodes()) return;
   for (const std::string& node : nodes) counts_.try_emplace({topic, node}, 0);
 }
 
@@ -30,7 +32,13 @@ void Connections::disconnected(const std::string& topic, const std::string& node
 }
 
 bool Connections::hasLeft(const std::string& node) const {
-  return std::find(left_.begin(), left_.end(), node) != left_.end();
+  return std::find(left_.begin(), left_.end(), node) != left_.end() || hostedExitCode(node);
+}
+
+std::vector<std::string> Connections::left() const {
+  std::vector<std::string> nodes = hostedNodesLeft();
+  nodes.insert(nodes.end(), left_.begin(), left_.end());
+  return nodes;
 }
 
 std::vector<std::string> Connections::missing() const {
@@ -59,6 +67,7 @@ std::string countText(std::uint64_t count) {
 }  // namespace
 
 std::string siblingNode(const std::string& base_name) {
+  if (hostsNodes()) return ros::this_node::getName();
   return ros::names::append(ros::this_node::getNamespace(), base_name);
 }
 

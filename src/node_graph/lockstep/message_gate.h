@@ -27,7 +27,8 @@ class Connections {
   Connections(const Connections&) = delete;
   Connections& operator=(const Connections&) = delete;
 
-  /// From now on each of `nodes` is counted on at `topic`.
+  /// From now on each of `nodes` is counted on at `topic`. Threads of this process are connected
+  /// from the moment they subscribe, and are not counted.
   void expect(const std::string& topic, const std::vector<std::string>& nodes);
   /// A node (full name) connected to or left a topic.
   void connected(const std::string& topic, const std::string& node);
@@ -35,8 +36,9 @@ class Connections {
 
   /// "node does not listen to topic yet", one text each; empty when all are there.
   std::vector<std::string> missing() const;
-  /// Nodes that were counted on, came and left, in the order they left.
-  const std::vector<std::string>& left() const { return left_; }
+  /// Nodes that were counted on, came and left, in the order they left; where nodes are threads of
+  /// this process, all that left.
+  std::vector<std::string> left() const;
   bool hasLeft(const std::string& node) const;
   /// Whether a node (full name) listens to any of the topics, counted on or not.
   bool listens(const std::string& node) const { return links_.count(node) > 0; }
@@ -165,7 +167,8 @@ class MessageGate {
   std::map<std::pair<std::string, std::string>, std::uint64_t> refused_;  ///< by sender and topic
 };
 
-/// Full name of a node beside this one.
+/// Full name of a node beside this one, as roscpp has it: that of the process where nodes share
+/// one.
 std::string siblingNode(const std::string& base_name);
 std::vector<std::string> siblingNodes(const std::vector<std::string>& base_names);
 

@@ -24,6 +24,8 @@
 namespace cdiff::node_graph {
 namespace {
 
+std::atomic<bool> signaled{false};  // a signal goes to one thread, and means all
+
 sigset_t stopSignals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -41,8 +43,8 @@ StopSignal::StopSignal() {
 bool StopSignal::raised() {
   const sigset_t signals = stopSignals();
   const timespec at_once{0, 0};
-  if (sigtimedwait(&signals, nullptr, &at_once) > 0) raised_ = true;
-  return raised_;
+  if (sigtimedwait(&signals, nullptr, &at_once) > 0) signaled = true;
+  return raised_ || signaled;
 }
 
 namespace {

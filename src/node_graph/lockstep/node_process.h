@@ -4,14 +4,14 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 
-#include "ros/callback_queue.h"
-#include "ros/ros.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 
 namespace cdiff::node_graph {
 
@@ -23,11 +23,13 @@ class StopSignal {
  public:
   /// Make it before any other thread exists, hence before ros::init.
   StopSignal();
-  /// Whether one of them has arrived, now or before.
+  /// Whether one of them has arrived at the process, now or before, or raise() was called.
   bool raised();
+  /// Stops who looks at this object, and no other node of the process.
+  void raise() { raised_ = true; }
 
  private:
-  bool raised_ = false;
+  std::atomic<bool> raised_{false};
 };
 
 // Wall-clock helpers of the traffic simulator's single thread.
@@ -39,10 +41,8 @@ inline double secondsSince(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Handles what has arrived; waits at most `seconds` for it.
-inline void spin(double seconds) {
-  ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(seconds));
-}
+/// Handles what has arrived at this node; waits at most `seconds` for it.
+inline void spin(double seconds) { nodeQueue().callAvailable(ros::WallDuration(seconds)); }
 
 // The other nodes of a session as processes: those that the same roslaunch has started on this
 // machine, and the command line it was given. Read from /proc; where a node was started otherwise

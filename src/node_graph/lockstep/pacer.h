@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +77,8 @@ class Pacer {
   virtual std::optional<SessionEnd> waitForObservers() { return std::nullopt; }
   /// The session ends: decisions close with what has come.
   virtual void close() = 0;
+  /// Mean waits for answers [ms] by channel; none where nothing waits for them.
+  virtual std::map<std::string, double> waits() const { return {}; }
   /// Answers that came late or never.
   virtual std::uint64_t late() const { return 0; }
   /// Whether a node that drives has been silent for a simulated time [s].

@@ -29,7 +29,7 @@ constexpr double kFarewell = 3.0;  // [s] for the last messages to arrive
 constexpr double kLead = 100.0;
 constexpr double kFirstHeartbeat = 30.0;  // [s] for a simulator of the same launch to begin
 
-void spin() { ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kPeriod)); }
+void spin() { nodeQueue().callAvailable(ros::WallDuration(kPeriod)); }
 
 double secondsSince(const ros::SteadyTime& begin) {
   return (ros::SteadyTime::now() - begin).toSec();
@@ -43,8 +43,7 @@ std::string simulatorFault(Ending ending, double timeout) {
   return "the node has sent nothing for " + core::formatNumber(timeout) + " s";
 }
 
-Participant::Participant(StopSignal& stop)
-    : stop_(stop), name_(baseName(ros::this_node::getName())) {
+Participant::Participant(StopSignal& stop) : stop_(stop), name_(baseName(nodeName())) {
   acks_ = connections_.advertise<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
                                                 {kTrafficSimulatorNode});
   gate_.setReport([this](const std::string& text) {
@@ -62,7 +61,7 @@ Participant::Participant(StopSignal& stop)
 ros::Publisher Participant::advertise(const Topic& topic) {
   const Channel& row = topic.row();
   return row.type.advertise(connections_, node_, topic.name(), listeners(topic, graph_),
-                            row.latched);
+                            isLatched(row));
 }
 
 void Participant::listen(const Topic& topic, const TakeMessage& take) {
@@ -110,19 +109,21 @@ std::optional<Ending> Participant::waitForSession() {
 std::optional<Ending> Participant::unstartedEnding() {
   if (!ros::ok()) return Ending::kStopped;
   if (simulatorSilent()) return Ending::kSimulatorSilent;
+  if (hostsNodes() && simulatorGone()) return Ending::kSimulatorGone;
   const bool overdue = !heartbeat_.everHeard() && secondsSince(began_) > kFirstHeartbeat;
   if (overdue && launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorSilent;
   if (!stop_.raised()) return std::nullopt;
   if (stopped_at_.isZero()) stopped_at_ = ros::SteadyTime::now();
   // The simulator was stopped too and writes a result, or its death is why roslaunch stops us.
-  if (!launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorGone;
+  if (!simulatorRuns()) return Ending::kSimulatorGone;
   if (secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
   return std::nullopt;
 }
 
 /// One line in /diagnostics, once a second of the node's time.
 void Participant::openDiagnostics() {
-  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
+  diagnostics_ =
+      std::make_unique<diagnostic_updater::Updater>(node_, privateNodeHandle(), nodeName());
   diagnostics_->setHardwareID("session");
   diagnostics_->add(subject(), [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     const bool needed = graph_.has(name_);
@@ -140,7 +141,7 @@ int Participant::runSession() {
   openDiagnostics();
   const session::ScenarioOptions options = optionsFromMsg(*session_);
   simulation_step_ = options.simulation_step;
-  lag_ = graph_.paced || isReplay(*session_) ? 0 : kMostLag;
+  lag_ = mayLag() && !graph_.paced && !isReplay(*session_) ? kMostLag : 0;
   lead_ = static_cast<std::uint64_t>(
       std::llround((options.decision_period + kLead) / simulation_step_));
   traffic_input_ = gate_.subscribe<msgs::TrafficSnapshot>(
@@ -162,6 +163,12 @@ std::optional<Ending> Participant::unexpectedEnding() {
   if (stop_.raised() && stopped_at_.isZero()) stopped_at_ = ros::SteadyTime::now();
   if (!stopped_at_.isZero() && secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
   return std::nullopt;
+}
+
+/// Whether it is there, as far as this can be seen before it publishes anything.
+bool Participant::simulatorRuns() const {
+  if (hostsNodes()) return hostedNodeRuns(kTrafficSimulatorNode);
+  return launchedProcess(kTrafficSimulatorNode).has_value();
 }
 
 bool Participant::simulatorSilent() { return heartbeat_.silent(ros::SteadyTime::now().toSec()); }
@@ -248,7 +255,7 @@ void Participant::publishAck(std::uint8_t kind, std::uint64_t tick, const std::s
   message.kind = kind;
   message.tick = tick;
   message.text = text;
-  acks_.publish(message);
+  acks_.publish(shared(std::move(message)));
 }
 
 void Participant::report() {

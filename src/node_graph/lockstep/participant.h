@@ -61,6 +61,8 @@ class Participant {
   virtual bool ready(const ::e2e_cdiff::TrafficSnapshot&) const { return true; }
   /// Whether the node leaves decisions out when it falls behind the wall clock.
   virtual bool leavesOut() const { return false; }
+  /// Whether a simulator that waits for answers goes on without this node for up to kMostLag ticks.
+  virtual bool mayLag() const { return false; }
   /// What the node's line of /diagnostics is about, after its name.
   virtual std::string subject() const = 0;
   /// Adds the node's own facts to it.
@@ -76,7 +78,7 @@ class Participant {
   ros::Publisher advertise(const Topic& topic) {
     requireType(topic.id, typeid(Message));
     return connections_.advertise<Message>(node_, topic.name(), listeners(topic, graph_),
-                                           topic.row().latched);
+                                           isLatched(topic.row()));
   }
   ros::Publisher advertise(const Topic& topic);
   /// Takes what the topic's publisher sends; see MessageGate::subscribe.
@@ -124,6 +126,7 @@ class Participant {
   void report();
   std::string missing() const;
   bool simulatorSilent();
+  bool simulatorRuns() const;
   bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
   void publishAck(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
   std::uint64_t lastTick() const { return next_tick_ == 0 ? 0 : next_tick_ - 1; }
@@ -131,7 +134,7 @@ class Participant {
   StopSignal& stop_;
   Connections connections_;
   MessageGate gate_;
-  ros::NodeHandle node_;
+  ros::NodeHandle node_ = nodeHandle();
   std::string name_;
   SessionGraph graph_;
   ros::Publisher acks_;
@@ -162,6 +165,7 @@ class Observer : public Participant {
   using Participant::Participant;
 
  protected:
+  bool mayLag() const override { return true; }
   /// Listens to all that the table of channels lists as answers and reports for an observer of this
   /// part; from now on a decision is complete with all that the table asks for.
   void listenToAnswers(Party party, const session::ScenarioOptions& options);

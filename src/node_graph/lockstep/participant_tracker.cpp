@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "e2e_cdiff/Heartbeat.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/lockstep/message_gate.h"
 #include "node_graph/messages/topics.h"
 
@@ -19,7 +20,8 @@ constexpr std::chrono::seconds kBeatPeriod{1};
 HeartbeatPublisher::HeartbeatPublisher(ros::NodeHandle& node, double timeout)
     : publisher_(
           node.advertise<::e2e_cdiff::Heartbeat>(Topic(ChannelId::kHeartbeat).name(), 1, true)),
-      thread_([this, timeout] { publishUntilStopped(timeout); }) {}
+      thread_(
+          [this, timeout, name = baseName(nodeName())] { publishUntilStopped(name, timeout); }) {}
 
 HeartbeatPublisher::~HeartbeatPublisher() {
   {
@@ -30,10 +32,10 @@ HeartbeatPublisher::~HeartbeatPublisher() {
   thread_.join();
 }
 
-void HeartbeatPublisher::publishUntilStopped(double timeout) {
+void HeartbeatPublisher::publishUntilStopped(const std::string& node, double timeout) {
   const auto begin = std::chrono::steady_clock::now();
   ::e2e_cdiff::Heartbeat message;
-  message.node = baseName(ros::this_node::getName());
+  message.node = node;
   message.timeout = timeout;
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {

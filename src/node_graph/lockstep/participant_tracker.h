@@ -31,7 +31,7 @@ class HeartbeatPublisher {
   HeartbeatPublisher& operator=(const HeartbeatPublisher&) = delete;
 
  private:
-  void publishUntilStopped(double timeout);
+  void publishUntilStopped(const std::string& node, double timeout);
 
   ros::Publisher publisher_;
   std::mutex mutex_;

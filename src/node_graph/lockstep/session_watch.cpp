@@ -27,9 +27,8 @@ std::optional<SessionEnd> SessionWatch::disturbance() {
   }
   if (const auto& error = participants_.error())
     return SessionEnd{SessionStatus::kError, error->node, error->text};
-  if (!connections_.left().empty())
-    return SessionEnd{SessionStatus::kError, connections_.left().front(),
-                      "the node left the session"};
+  if (const auto left = connections_.left(); !left.empty())
+    return SessionEnd{SessionStatus::kError, left.front(), "the node left the session"};
   if (other_cause_) {
     if (auto cause = other_cause_()) return cause;
   }

@@ -7,6 +7,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/CbvSelection.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/messages/channels.h"
 #include "node_graph/messages/message_checks.h"
 
@@ -64,6 +65,11 @@ std::vector<std::string> namesOf(const std::vector<Topic>& topics) {
   std::vector<std::string> names;
   for (const Topic& topic : topics) names.push_back(topic.name());
   return names;
+}
+
+bool isLatched(const Channel& channel) {
+  const bool often = channel.use == Use::kTick || channel.use == Use::kAnswer;
+  return channel.latched && !(often && hostsNodes());
 }
 
 bool listensTo(const Channel& channel, Party party, const SessionGraph& graph) {

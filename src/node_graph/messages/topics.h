@@ -71,6 +71,10 @@ bool replayed(const Channel& channel, const SessionGraph& graph);
 /// ego planner", or "the external CBV planner".
 std::string answererOf(const Topic& topic, const SessionGraph& graph);
 
+/// Whether a channel's last message waits for who subscribes later. What comes at every tick or
+/// decision does not where nodes share a process: roscpp would serialize each message for nobody.
+bool isLatched(const Channel& channel);
+
 /// Whether the node that plays a part in the session listens to a channel.
 bool listensTo(const Channel& channel, Party party, const SessionGraph& graph);
 

@@ -28,6 +28,7 @@ class CameraNode : public Participant {
     return !graph().imagesOfCbvs() || selections_.count(snapshot.tick) > 0;
   }
   bool leavesOut() const override { return graph().paced; }
+  bool mayLag() const override { return true; }
   std::string subject() const override { return "images"; }
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) override {
     status.add("images", images_);

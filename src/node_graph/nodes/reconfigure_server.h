@@ -8,8 +8,7 @@
 #include "dynamic_reconfigure/Config.h"
 #include "dynamic_reconfigure/ConfigDescription.h"
 #include "dynamic_reconfigure/Reconfigure.h"
-#include "ros/callback_queue.h"
-#include "ros/ros.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "session/session_control.h"
 
 namespace cdiff::node_graph {
@@ -45,7 +44,7 @@ class ReconfigureServer {
   session::SessionControl& control_;
   double target_speed_;  ///< of the scenario [m/s]
   std::vector<Parameter> parameters_;
-  ros::NodeHandle node_{"~"};
+  ros::NodeHandle node_ = privateNodeHandle();
   ros::Publisher descriptions_;
   ros::Publisher updates_;
   ros::ServiceServer server_;

@@ -2,11 +2,14 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/nodes/traffic_simulator_node.h"
 
+#include <cstdlib>
+
 #include "core/markup.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
+#include "node_graph/lockstep/answer_waits.h"
 #include "node_graph/lockstep/lockstep_pacer.h"
 #include "node_graph/lockstep/wall_clock_pacer.h"
 #include "node_graph/messages/message_checks.h"
@@ -124,7 +127,8 @@ int TrafficSimulatorNode::run() {
   advertise();
   listen();
   services_ = std::make_unique<SessionServices>(world_->control(), *setup_);
-  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
+  diagnostics_ =
+      std::make_unique<diagnostic_updater::Updater>(node_, privateNodeHandle(), nodeName());
   diagnostics_->setHardwareID(setup_->options().name);
   diagnostics_->add("session", this, &TrafficSimulatorNode::diagnose);
   session_.publish(shared(sessionInfo(world_->simulatorVersion())));
@@ -133,6 +137,7 @@ int TrafficSimulatorNode::run() {
   pacer_->begin();
   runTicks();
   services_.reset();
+  writeWaits(pacer_->waits());
   waitForResult();
   reserve_.reset();
   const int exit_code = exitCode();
@@ -170,7 +175,7 @@ msgs::SessionInfo TrafficSimulatorNode::sessionInfo(const std::string& simulator
 ros::Publisher TrafficSimulatorNode::advertise(const Topic& topic) {
   const Channel& row = topic.row();
   return row.type.advertise(connections_, node_, topic.name(), listeners(topic, graph_),
-                            row.latched);
+                            isLatched(row));
 }
 
 void TrafficSimulatorNode::advertise() {
@@ -327,7 +332,7 @@ void TrafficSimulatorNode::publishTick() {
   rosgraph_msgs::Clock clock;
   clock.clock = message.header.stamp;
   published_ = shared(std::move(message));
-  if (clock_) clock_.publish(clock);
+  if (clock_) clock_.publish(shared(clock));
   gate_.setNewestTick(published_->tick, setup_->options().simulation_step);
   services_->show(published_);
   display_.publish(snapshot);
@@ -370,7 +375,20 @@ void TrafficSimulatorNode::endSession(const SessionEnd& end) {
 void TrafficSimulatorNode::waitForResult() {
   const bool interrupted = world_->snapshot().status == SessionStatus::kInterrupted;
   watch_.waitForObservers(interrupted ? kInterruptedPatience : limits_.answer);
-  if (!participants_.finished(kMetricsNode)) writeResultAlone();
+  if (participants_.finished(kMetricsNode)) return;
+  if (hostedNodeRuns(kMetricsNode)) return handReserveOver();
+  writeResultAlone();
+}
+
+/// A thread that hangs cannot be ended alone, and may go on writing: the process ends here and now,
+/// and who launched it writes the result.
+void TrafficSimulatorNode::handReserveOver() {
+  ROS_FATAL(
+      "metrics_node hangs, and with it the process of all nodes; scripts/session writes the "
+      "result from %s/.reserve",
+      results_.c_str());
+  reserve_->handOver(published_);
+  std::_Exit(core::ExitCode::kRunTimeError);
 }
 
 void TrafficSimulatorNode::writeResultAlone() {
@@ -403,6 +421,8 @@ void TrafficSimulatorNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("pace", paceText(world_->control().state()));
   status.add("changes steered", steered_);
   status.add("late answers", pacer_->late());
+  for (const auto& [channel, milliseconds] : pacer_->waits())
+    status.add("wait for " + channel + " [ms]", core::formatFixed(milliseconds, 3));
   status.add("faults that nodes reported", noted_faults_.size());
 }
 

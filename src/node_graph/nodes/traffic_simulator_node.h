@@ -70,11 +70,12 @@ class TrafficSimulatorNode {
   void endSession(const SessionEnd& end);
   void waitForResult();
   void writeResultAlone();
+  void handReserveOver();
   int exitCode() const;
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   StopSignal& stop_;
-  ros::NodeHandle node_;
+  ros::NodeHandle node_ = nodeHandle();
   HeartbeatPublisher heartbeat_;
   SimulatorLimits limits_;
   std::filesystem::path results_;

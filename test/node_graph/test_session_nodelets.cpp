@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// Sessions whose nodes are threads of one process: the same bytes as one process and as nodes, and
+// a result whatever becomes of the nodes or their process.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "e2e_cdiff/GuidanceReport.h"
+#include "node_graph/launched_session.h"
+#include "node_graph/session_launch.h"
+#include "nodelet/NodeletUnload.h"
+#include "ros/ros.h"
+
+namespace cdiff {
+namespace {
+
+/// The messages of a bag one after the other, but for what names the deployment or the wall clock.
+std::string messagesIn(const fs::path& bag_file) {
+  std::string text;
+  rosbag::Bag bag(bag_file.string(), rosbag::bagmode::Read);
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    text += message.getTopic() + " " + std::to_string(message.getTime().toNSec()) + " ";
+    const bool of_wall_clock = message.isType<::e2e_cdiff::SessionInfo>() ||
+                               message.isType<::e2e_cdiff::ControlAction>() ||
+                               message.isType<::e2e_cdiff::GuidanceReport>();
+    if (!of_wall_clock) {
+      std::vector<std::uint8_t> bytes(message.size());
+      ros::serialization::OStream stream(bytes.data(), message.size());
+      message.write(stream);
+      text.append(bytes.begin(), bytes.end());
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(Session, NodeletsHaveTheTraceAndTheBagOfNodesAndOfOneProcess) {
+  const std::string arguments =
+      "scenario:=crossing_left_turn seed:=2 record:=true camera:=true "
+      "set:=\"protocol.time_limit=8 verdict.judge=false\"";
+  const std::string log = launch("e2e_cdiff session.launch", "nodelets:=true " + arguments);
+  ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
+  EXPECT_EQ(exitCode(), "0\n") << log;
+  session::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.set = {"protocol.time_limit=8", "verdict.judge=false"};
+  const fs::path alone = folder_ / "one_process";
+  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, alone));
+  EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
+  EXPECT_GT(summary()["cbv"]["count"], 0) << "the session shows no CBV; choose one that does";
+  fs::rename(results(), folder_ / "nodelets");
+  const std::string of_nodes = launch("e2e_cdiff session.launch", arguments);
+  EXPECT_EQ(exitCode(), "0\n") << of_nodes;
+  EXPECT_EQ(messagesIn(folder_ / "nodelets" / "session.bag"),
+            messagesIn(results() / "session.bag"));
+}
+
+TEST_F(Session, NodeletsRefuseBadInputAsNodesDo) {
+  const std::string log =
+      launch("e2e_cdiff session.launch", "nodelets:=true scenario:=crossing_left_trun");
+  EXPECT_EQ(exitCode(), "3\n") << log;
+  EXPECT_NE(log.find("crossing_left_turn"), std::string::npos) << log;
+}
+
+// A session that goes on for as long as the fault needs.
+const char* const kLong =
+    "nodelets:=true record:=true scenario:=crossing_straight cbv_planner:=pdm_lite "
+    "set:=\"at_most=2 protocol.time_limit=60\"";
+
+std::string script(const test::LaunchedSession& session) {
+  return "BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS "/session results:=" +
+         session.results().string() + " " + kLong;
+}
+
+class NodeletCrash : public ::testing::TestWithParam<int> {};
+
+/// The trace of the ticks that were driven before the end.
+std::string wholeTrace(const fs::path& folder) {
+  session::SessionRequest request;
+  request.scenario = "crossing_straight";
+  request.cbv_planner = "pdm_lite";
+  request.set = {"protocol.time_limit=60"};
+  test::runInOneProcess(request, folder);
+  return core::readFile(folder / "trace.csv", "trace");
+}
+
+// The simulator's record has all ticks but those that its process had not handed to the system.
+TEST_P(NodeletCrash, LeavesTheResultOfTheTicksBefore) {
+  test::LaunchedSession session;
+  session.start(script(session));
+  ASSERT_TRUE(session.hasTicks()) << session.log();
+  ASSERT_TRUE(session.signal("session_nodelets", GetParam()));
+  EXPECT_LT(session.endAfter(60.0), 60.0);
+  EXPECT_EQ(session.exitStatus(), 2) << session.log();
+  EXPECT_EQ(session.exitCode(), "2\n") << session.log();
+  EXPECT_EQ(session.summary()["status"], "error");
+  EXPECT_EQ(session.fault(),
+            "session_nodelets: the process of all nodes ended before the session did, by signal " +
+                std::to_string(GetParam()))
+      << session.log();
+  const std::string trace = core::readFile(session.results() / "trace.csv", "trace");
+  constexpr std::size_t kEnd =
+      8000;  // [bytes] more than the last tick, which repeats the one before
+  ASSERT_GT(trace.size(), 2 * kEnd);
+  const std::string driven = trace.substr(0, trace.size() - kEnd);
+  EXPECT_EQ(wholeTrace(session.folder() / "one_process").substr(0, driven.size()), driven);
+  EXPECT_FALSE(fs::exists(session.results() / ".reserve"));
+  EXPECT_EQ(session.leftovers(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(NodeletCrash, NodeletCrash, ::testing::Values(SIGSEGV, SIGKILL));
+
+TEST(NodeletSession, ANodeletThatIsUnloadedEndsTheSessionAndIsNamed) {
+  test::LaunchedSession session;
+  session.launch(std::string("ns:=a ") + kLong);
+  ASSERT_TRUE(session.hasTicks()) << session.log();
+  const std::string master = "http://127.0.0.1:" + std::to_string(session.port());
+  ros::init(ros::M_string{{"__master", master}}, "unloader", ros::init_options::NoSigintHandler);
+  ros::NodeHandle node;
+  nodelet::NodeletUnload unload;
+  unload.request.name = "/a/cbv_identification_node";
+  EXPECT_TRUE(ros::service::call("/a/session_nodelets/unload_nodelet", unload)) << session.log();
+  ros::shutdown();
+  EXPECT_LT(session.endAfter(60.0), 60.0) << session.log();
+  EXPECT_EQ(session.exitCode(), "2\n") << session.log();
+  EXPECT_EQ(session.summary()["status"], "error");
+  EXPECT_EQ(session.fault(), "cbv_identification_node: the node left the session");
+  EXPECT_EQ(session.leftovers(), "");
+}
+
+}  // namespace
+}  // namespace cdiff
