@@ -2,9 +2,10 @@
 
     scripts/benchmark graph [--rounds N] [--seconds S]
 
-Runs the same session on a town by turns: in one process with results, as nodes with a bag, and as nodelets with a bag. Rates are ticks by
-the wall time that the result names, from the first tick to the last; a share is the median over the rounds of a rate by that of the one
-process beside it. All three must give the same trace. A wait is the mean time from a tick to the handling of an answer to it.
+Runs the same session on a town by turns: in one process with results, as nodes with a bag, and as nodelets with a bag; each once for 10 s and
+once for S seconds of simulated time. A rate is the ticks by which the two differ by the wall time by which their results do, so no start
+counts. A share is the median over the rounds of a rate by that of the one process beside it. All three must give the same trace. A wait is
+the mean time from a tick to the handling of an answer to it.
 """
 import argparse
 import json
@@ -16,6 +17,7 @@ import tempfile
 from pathlib import Path
 
 STEP = 0.05  # [s] of simulated time a tick
+SHORT = 10.0  # [s] of simulated time of the session beside each
 ROUTE = "25318"
 KEYS = ("traffic.density=50", "traffic.forget_distance=160", "max_cbv=2", "protocol.blocked_time=1000", "verdict.judge=false")
 GOALS = {"nodes": 0.6, "nodelets": 0.85}
@@ -32,12 +34,12 @@ def town(data):
 
 
 def run(command, results, environment):
-    """Ticks per second and trace of one session."""
+    """Ticks, wall time [s] and trace of one session."""
     done = subprocess.run(command, env={**os.environ, **environment}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0:
         sys.exit(f"benchmark: a session failed: {' '.join(command)}\n{done.stdout[-2000:]}")
     summary = json.loads((results / "summary.json").read_text())
-    return summary["simulated_seconds"] / STEP / summary["wall_seconds"], summary["trace_sha256"]
+    return summary["simulated_seconds"] / STEP, summary["wall_seconds"], summary["trace_sha256"]
 
 
 def one_process(session, keys, seed, results):
@@ -48,12 +50,25 @@ def one_process(session, keys, seed, results):
 
 
 def graph(kind, session, keys, seed, results):
-    """The same with the mean waits [ms] by channel."""
-    waits = results.with_suffix(".waits")
+    """The same of the node graph, which leaves its mean waits beside the results."""
     arguments = [f"{name}:={value}" for name, value in session.items()]
-    rate, trace = run(["scripts/session", *arguments, f"set:={' '.join(keys)}", f"seed:={seed}", f"results:={results}", "record:=true",
-                       f"nodelets:={'true' if kind == 'nodelets' else 'false'}"], results, {"E2E_CDIFF_WAITS_FILE": str(waits)})
-    return rate, trace, json.loads(waits.read_text())
+    return run(["scripts/session", *arguments, f"set:={' '.join(keys)}", f"seed:={seed}", f"results:={results}", "record:=true",
+                f"nodelets:={'true' if kind == 'nodelets' else 'false'}"], results, {"E2E_CDIFF_WAITS_FILE": str(waits_file(results))})
+
+
+def waits_file(results):
+    return results.with_suffix(".waits")
+
+
+def rate(kind, session, seconds, seed, results):
+    """Ticks per second and trace of a session of so many seconds."""
+    outcomes = []
+    for length in (SHORT, seconds):
+        keys = [*KEYS, f"protocol.time_limit={length:g}"]
+        place = results / f"{kind}_{seed}_{length:g}"
+        outcomes.append(one_process(session, keys, seed, place) if kind == "one_process" else graph(kind, session, keys, seed, place))
+    (few, short, _), (many, long, trace) = outcomes
+    return (many - few) / (long - short), trace, place
 
 
 def main():
@@ -62,17 +77,18 @@ def main():
     parser.add_argument("--seconds", type=float, default=60.0, help="simulated time of a session [s]")
     options = parser.parse_args()
     session = town(Path(os.environ.get("E2E_CDIFF_DATA", "../shared/data")))
-    keys = [*KEYS, f"protocol.time_limit={options.seconds:g}"]
     rates, waits = {"one_process": [], "nodes": [], "nodelets": []}, {}
     with tempfile.TemporaryDirectory() as scratch:
         for seed in range(1, options.rounds + 1):
-            alone, trace = one_process(session, keys, seed, Path(scratch) / f"one_process_{seed}")
-            rates["one_process"].append(alone)
-            for kind in GOALS:
-                rate, other, waits[kind] = graph(kind, session, keys, seed, Path(scratch) / f"{kind}_{seed}")
-                if other != trace:
-                    sys.exit(f"benchmark: the trace of {kind} is another one")
-                rates[kind].append(rate)
+            traces = set()
+            for kind, values in rates.items():
+                value, trace, results = rate(kind, session, options.seconds, seed, Path(scratch))
+                values.append(value)
+                traces.add(trace)
+                if kind in GOALS:
+                    waits[kind] = json.loads(waits_file(results).read_text())
+            if len(traces) != 1:
+                sys.exit("benchmark: one process, nodes and nodelets have different traces")
     for kind, values in rates.items():
         print(f"graph_{kind} {statistics.median(values):.1f} ticks/s -")
     for kind, goal in GOALS.items():
