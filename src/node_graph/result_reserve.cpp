@@ -11,6 +11,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/lockstep/tick_record.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_files.h"
 #include "page/result_writer.h"
 
