@@ -3,6 +3,7 @@
 
     test_scripts.py BUILD SOURCE RESULT.xml
 """
+import gzip
 import json
 import os
 import re
@@ -131,6 +132,28 @@ class Scripts(unittest.TestCase):
         for package in ("libtorch-dev", "libgtest-dev", "libbenchmark-dev"):
             self.assertNotIn(package, sessions)
             self.assertIn(package, build)
+
+    def test_the_package_is_built_for_sessions_below_opt(self):
+        calls = calls_of("package")
+        self.assertIn("-DCMAKE_INSTALL_PREFIX=/opt/e2e_cdiff", calls[0])
+        self.assertEqual(targets_of(calls), [["e2e_cdiff_session_programs"]])
+        self.assertEqual(calls_of("package", "--bogus"), [])
+
+    @unittest.skipUnless((BUILD / "devel/lib/e2e_cdiff/cdiff").exists(), "the program is not built")
+    def test_the_manual_and_the_completion_know_the_commands(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([SOURCE / "scripts/write_reference", "--cdiff", BUILD / "devel/lib/e2e_cdiff/cdiff", "--manual", folder], check=True, timeout=100)
+            page = gzip.decompress((Path(folder) / "cdiff.1.gz").read_bytes()).decode()
+            self.assertIn(".SH EXPORT\n", page)
+            self.assertNotRegex(page, re.compile(r"^'", re.MULTILINE))
+
+            def completed(*words):
+                line = f"source {folder}/cdiff; COMP_WORDS=(cdiff {' '.join(words)}); COMP_CWORD={len(words)}; _cdiff; echo ${{COMPREPLY[@]}}"
+                return subprocess.run(["bash", "-c", line], check=True, capture_output=True, text=True, timeout=20).stdout.split()
+
+            self.assertEqual(completed("exp"), ["export"])
+            self.assertEqual(completed("export", "--for"), ["--format"])
+            self.assertEqual(completed("--ver"), ["--version"])
 
     def test_demo_builds_nothing_for_help_or_bad_arguments(self):
         for arguments in (["--help"], ["--bogus"], ["one", "two"]):
