@@ -337,13 +337,13 @@ void requireSameSession(const std::string& source, const session::ScenarioOption
 }
 
 /// Throws InputError for a scenario that cannot be set up, and for a folder as runSession does.
-std::shared_ptr<PreparedRun> prepared(const session::ScenarioOptions& options,
-                                      const RunOutput& output) {
+std::shared_ptr<PreparedRun> preparedRun(const session::ScenarioOptions& options,
+                                         const RunOutput& output) {
   record::requireFreeFolder(output.folder, output.overwrite);
   return std::make_shared<PreparedRun>(options, output);
 }
 
-/// Throws InputError as `prepared`.
+/// Throws InputError as `preparedRun`.
 std::shared_ptr<PreparedRun> prepare(const RunArguments& arguments) {
   suite::requireOpen(arguments.request.scenario);
   session::SessionRequest request = arguments.request;
@@ -355,8 +355,8 @@ std::shared_ptr<PreparedRun> prepare(const RunArguments& arguments) {
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
                                    std::to_string(options.seed) + "_" + core::timeForFileName())
           : fs::path(arguments.results);
-  return prepared(options, {folder, arguments.quiet, arguments.record, arguments.overwrite,
-                            portOf(arguments), arguments.answer_timeout});
+  return preparedRun(options, {folder, arguments.quiet, arguments.record, arguments.overwrite,
+                               portOf(arguments), arguments.answer_timeout});
 }
 
 /// SIGINT, SIGTERM and SIGHUP end the session as interrupted.
@@ -375,7 +375,7 @@ int demo(const fs::path& folder) {
   output.folder = fs::absolute(folder);
   output.overwrite = true;
   const std::atomic<bool>& stop = core::catchStopSignals();
-  const int exit_code = runSession(*prepared(session::resolveRequest(request), output), stop);
+  const int exit_code = runSession(*preparedRun(session::resolveRequest(request), output), stop);
   return isJudged(exit_code) ? ExitCode::kPassed : exit_code;
 }
 

@@ -96,10 +96,6 @@ int runNode(int argc, char** argv, const char* name) {
   return runNode(argc, argv, name, [](StopSignal& stop) { return Node(stop).run(); });
 }
 
-}  // namespace
-
-namespace {
-
 template <class Node>
 int runBody(StopSignal& stop) {
   return Node(stop).run();
@@ -136,7 +132,7 @@ int waitForHostedNodes() {
 
 int runHostedNode(const std::string& kind, const std::string& name, StopSignal& stop) {
   HostedNode node(name);
-  const int exit_code = runGuarded(bodyOf(kind), stop);
+  const int exit_code = runGuarded(bodyOf(kind), stop, loadPlugins());
   node.setExitCode(exit_code);
   return exit_code;
 }

@@ -35,8 +35,8 @@ TEST(DiffusionWorkers, DivideItemsAmongThemselves) {
 
 TEST(Worker, MixesPredictionsWhereTheRouteIsScaled) {
   const diffusion::Model model = cdiff::testing::randomModel();
-  Worker plain({}, model, false);
-  Worker scaled({}, model, true);
+  Worker plain({}, model, false, 0);
+  Worker scaled({}, model, true, 1);
   EXPECT_EQ(dynamic_cast<diffusion::RouteScaledDenoiser*>(&plain.denoiser(true)), nullptr);
   EXPECT_NE(dynamic_cast<diffusion::RouteScaledDenoiser*>(&scaled.denoiser(true)), nullptr);
   EXPECT_EQ(dynamic_cast<diffusion::RouteScaledDenoiser*>(&scaled.denoiser(false)), nullptr);
