@@ -430,8 +430,8 @@ core::ForkedRun prepareRun(const std::vector<std::string>& words) {
   program.parse(reversed);
   const std::shared_ptr<PreparedRun> run = prepare(arguments);
   // The level that the ego starts on is made here: children cannot hand on what they make.
-  const Eigen::Vector3d start = prepared->setup.egoRoute().path().pointAt(0.0);
-  prepared->setup.drivableArea().contains(start.head<2>(), start.z());
+  const Eigen::Vector3d start = run->setup.egoRoute().path().pointAt(0.0);
+  run->setup.drivableArea().contains(start.head<2>(), start.z());
   // A plug-in's planner may remember in its library what it did before: its child makes it anew.
   if (plugins::loadPlugins().empty()) run->parts = session::makeParts(run->setup);
   return [run] { return runSession(*run, core::catchStopSignals()); };
