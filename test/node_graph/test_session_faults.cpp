@@ -188,6 +188,20 @@ TEST_F(SessionFaults, ScriptStoppedBeforeTheFirstTickPrintsTheTable) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
+// The nodes need no master once they are connected; roslaunch waits for it without end.
+TEST_F(SessionFaults, ScriptEndsThoughItsMasterIsStopped) {
+  session_.start(
+      script("scenario:=crossing_straight cbv_planner:=pdm_lite set:=\"at_most=1 "
+             "protocol.time_limit=8 verdict.judge=false\"",
+             session_));
+  ASSERT_TRUE(session_.hasTicks()) << session_.log();
+  ASSERT_TRUE(session_.signal("rosmaster", SIGSTOP));
+  EXPECT_LT(session_.endAfter(200.0), 200.0) << session_.log();
+  EXPECT_EQ(session_.exitStatus(), 0) << session_.log();
+  EXPECT_EQ(session_.summary()["status"], "timed_out");
+  EXPECT_EQ(session_.leftovers(), "");
+}
+
 TEST_F(SessionFaults, ScriptNamesAMasterThatDoesNotAnswer) {
   session_.start("E2E_CDIFF_MASTER=http://127.0.0.1:" + std::to_string(session_.port()) +
                  " BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS
