@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -10,6 +8,7 @@
 #include "node_graph/messages/traffic_conversions.h"
 #include "record/sample_session.h"
 #include "rosbag/view.h"
+#include "support/small_files.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::node_graph {
@@ -63,14 +62,9 @@ TEST(BagQueue, KeepsNoNumberOfAConnection) {
 // A file may have 1 MiB; 100 ticks of 2000 vehicles have more.
 TEST(BagQueue, AFullDiskIsNamedToWhoHandsTicksOver) {
   const test::TemporaryFolder folder;
-  ::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  rlimit small = before;
-  small.rlim_cur = rlim_t{1} << 20;
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
   std::string text;
   {
+    const test::SmallFiles small;
     BagFile bag(folder.path() / "a.bag", test::sampleOptions(), bagTopic,
                 BagFile::Content::kSessionOnly);  // not compressed
     BagQueue queue(bag);
@@ -81,7 +75,6 @@ TEST(BagQueue, AFullDiskIsNamedToWhoHandsTicksOver) {
       text = error.what();
     }
   }
-  ::setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_NE(text.find("cannot write the bag '" + (folder.path() / "a.bag").string()),
             std::string::npos)
       << text;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
+
+#include <memory>
 
 #include "node_graph/messages/channel_conversions.h"
 #include "node_graph/messages/session_conversions.h"
@@ -10,6 +10,7 @@
 #include "node_graph/result_reserve.h"
 #include "node_graph/session_files.h"
 #include "node_graph/session_launch.h"
+#include "support/small_files.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::node_graph {
@@ -211,12 +212,7 @@ TEST(ResultReserve, FullDiskCostsTheTicksButNotTheResult) {
   const test::TemporaryFolder folder;
   const session::SessionSetup setup(session::resolveRequest(shortSession()));
   ResultReserve reserve(setup, infoOf(setup, folder.path()));
-  ::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  rlimit small = before;
-  small.rlim_cur = rlim_t{1} << 20;
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  auto small = std::make_unique<test::SmallFiles>();
   traffic::TrafficSnapshot snapshot;
   snapshot.vehicles.resize(2000);
   for (std::uint64_t tick = 0; tick < 20; ++tick) {
@@ -225,7 +221,7 @@ TEST(ResultReserve, FullDiskCostsTheTicksButNotTheResult) {
   }
   EXPECT_FALSE(fs::exists(folder.path() / ".reserve" / "session.bag.active"));
   EXPECT_TRUE(reserve.adopt(brokenEnd(20), 0.5));
-  ::setrlimit(RLIMIT_FSIZE, &before);
+  small.reset();
   const nlohmann::json faults = summaryIn(folder.path())["faults"];
   ASSERT_EQ(faults.size(), 2U) << faults;
   EXPECT_EQ(faults[0]["source"], "result folder");

@@ -152,25 +152,23 @@ TEST(SumoStart, NamesAMissingProgram) {
   EXPECT_NE(error.find("install the package sumo"), std::string::npos) << error;
 }
 
-/// A program in the place of SUMO.
-SumoOptions withProgram(const test::TemporaryFolder& folder, const std::string& text) {
-  SumoOptions options;
-  options.binary = (folder.path() / "not_sumo").string();
-  std::ofstream(options.binary) << text;
-  std::filesystem::permissions(options.binary, std::filesystem::perms::owner_all);
-  return options;
-}
-
-TEST(SumoStart, QuotesLittleOfWhatSumoPrintsAndNoControlCharacters) {
+/// Of a start with a program of this text in the place of SUMO.
+std::string startErrorOf(const std::string& program) {
   const test::TemporaryFolder folder;
   const test::SumoNetwork made = test::makeCrossing(folder, false);
   SumoSession session;
   session.network_file = made.file;
-  const SumoOptions options =
-      withProgram(folder,
-                  "#!/bin/sh\nhead -c 20000000 /dev/zero | tr '\\0' 'x' >&2\n"
-                  "printf '\\nthe \\033[31mlast words\\n' >&2\nexit 1\n");
-  const std::string error = startError<core::SimulatorError>(options, session, made.network);
+  SumoOptions options;
+  options.binary = (folder.path() / "not_sumo").string();
+  std::ofstream(options.binary) << program;
+  std::filesystem::permissions(options.binary, std::filesystem::perms::owner_all);
+  return startError<core::SimulatorError>(options, session, made.network);
+}
+
+TEST(SumoStart, QuotesLittleOfWhatSumoPrintsAndNoControlCharacters) {
+  const std::string error = startErrorOf(
+      "#!/bin/sh\nhead -c 20000000 /dev/zero | tr '\\0' 'x' >&2\n"
+      "printf '\\nthe \\033[31mlast words\\n' >&2\nexit 1\n");
   EXPECT_NE(error.find("last words"), std::string::npos) << error;
   EXPECT_EQ(error.find('\033'), std::string::npos) << error;
   EXPECT_LT(error.size(), 2000U);
@@ -178,16 +176,10 @@ TEST(SumoStart, QuotesLittleOfWhatSumoPrintsAndNoControlCharacters) {
 
 // A socket that connects to itself is connected without ever having listened.
 TEST(SumoStart, SaysThatAnotherProgramConnectedFirst) {
-  const test::TemporaryFolder folder;
-  const test::SumoNetwork made = test::makeCrossing(folder, false);
-  SumoSession session;
-  session.network_file = made.file;
-  const SumoOptions options =
-      withProgram(folder,
-                  "#!/usr/bin/python3\nimport socket, sys, time\n"
-                  "own = ('127.0.0.1', int(sys.argv[sys.argv.index('--remote-port') + 1]))\n"
-                  "link = socket.socket()\nlink.bind(own)\nlink.connect(own)\ntime.sleep(60)\n");
-  const std::string error = startError<core::SimulatorError>(options, session, made.network);
+  const std::string error = startErrorOf(
+      "#!/usr/bin/python3\nimport socket, sys, time\n"
+      "own = ('127.0.0.1', int(sys.argv[sys.argv.index('--remote-port') + 1]))\n"
+      "link = socket.socket()\nlink.bind(own)\nlink.connect(own)\ntime.sleep(60)\n");
   EXPECT_NE(error.find("another program connected to SUMO before this one"), std::string::npos)
       << error;
 }
