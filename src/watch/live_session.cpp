@@ -67,18 +67,32 @@ std::string LiveSession::invitation() const {
 
 void LiveSession::begin(const page::ResultWriter& writer, double patience) {
   writer_ = &writer;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    holding_ = true;
+  }
+  hold(patience);
+  if (seen_) start();  // by a page that came before
+  std::vector<EarlyCommand> early;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    holding_ = false;
+    early.swap(early_);
+  }
+  for (EarlyCommand& one : early) link_->send(one.first, std::move(one.second));
+}
+
+/// Pauses the session until a page starts it; not where the wall clock rules.
+void LiveSession::hold(double patience) {
   auto done = std::make_shared<std::promise<bool>>();
   std::future<bool> paused = done->get_future();
   link_->send({}, [done](const std::string& refused) { done->set_value(refused.empty()); });
   const bool answered =
       paused.wait_for(std::chrono::duration<double>(kAnswerPatience)) == std::future_status::ready;
-  if (!answered || !paused.get()) return;  // it cannot be held, where the wall clock rules
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    held_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                     std::chrono::duration<double>(patience));
-  }
-  if (seen_) start();  // by a page that came before
+  if (!answered || !paused.get()) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  held_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                   std::chrono::duration<double>(patience));
 }
 
 void LiveSession::observe(const session::TickRecord& record) {
@@ -278,7 +292,11 @@ void LiveSession::take(const std::string& message,
   try {
     const PageCommand command = commandFrom(message);
     if (command.kind == PageCommand::Kind::kPace) pace_asked_ = true;
-    link_->send(command, reply);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (holding_)
+      early_.emplace_back(command, reply);
+    else
+      link_->send(command, reply);
   } catch (const core::InputError& error) {
     reply(error.what());
   }

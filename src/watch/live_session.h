@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "page/live_page.h"
@@ -68,10 +69,13 @@ class LiveSession : public session::SessionObserver, private WatchSource {
   void keepTexts(const traffic::TrafficSnapshot& snapshot);
   void keepVerdict();
   void noteValues();
+  void hold(double patience);
   void start();
   bool addFrame(NewsCursor& cursor, Json& news);
   void addLists(NewsCursor& cursor, Json& news);
   void addState(NewsCursor& cursor, Json& news);
+
+  using EarlyCommand = std::pair<PageCommand, SessionLink::Answer>;
 
   const session::SessionSetup& setup_;
   const page::ResultWriter* writer_ = nullptr;
@@ -92,6 +96,8 @@ class LiveSession : public session::SessionObserver, private WatchSource {
   std::mutex mutex_;  ///< of what follows
   std::condition_variable changed_;
   std::optional<Clock::time_point> held_until_;
+  bool holding_ = false;             ///< `begin` is under way
+  std::vector<EarlyCommand> early_;  ///< what pages ask for meanwhile
   std::shared_ptr<const page::LiveTick> tick_;
   std::uint64_t ticks_ = 0;  ///< copied so far
   std::vector<page::LivePoint> points_;

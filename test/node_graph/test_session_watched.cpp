@@ -47,7 +47,7 @@ TEST_F(Session, IsSteeredByItsPageAndRepeatsToTheSameBytes) {
   const nlohmann::json changes = summary()["steering"]["changes"];
   ASSERT_EQ(changes.size(), 2U) << changes;
   EXPECT_EQ(changes[0]["what"], "profile");
-  EXPECT_EQ(changes[0]["by"], "node /metrics_node");
+  EXPECT_EQ(changes[0]["by"], "live page");
   EXPECT_EQ(summary()["verdict"]["outcome"], "not_judged");
   const std::string token = answers[9].substr(answers[9].size() - 33, 32);
   EXPECT_EQ(filesWith(token, results()), std::vector<std::string>());
