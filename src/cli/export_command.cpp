@@ -88,7 +88,7 @@ void addExportCommand(CLI::App& program, int& exit_code) {
       ->add_option("--format", arguments->format,
                    "openscenario (1.2, with OpenDRIVE), commonroad (2020a) or csv")
       ->capture_default_str();
-  command->add_option("--from", arguments->scene.from, "Begin of what is exported [s]")
+  command->add_option("--from", arguments->scene.from, "Start of what is exported [s]")
       ->capture_default_str();
   command->add_option("--to", arguments->scene.to, "Its end [s] (default: the session's)");
   command

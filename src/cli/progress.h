@@ -42,7 +42,7 @@ class BatchProgress {
   void repeated(const std::string& cause, const std::vector<std::string>& ids) const;
   /// A run has ended; `resumed`: it was complete before this batch started.
   void ended(const evaluation::RunRecord& record, bool resumed);
-  /// Ends the rewritten line and tells the share of start-up; call once, after the last run.
+  /// Ends the rewritten line and prints the share of start-up. Call it once, after the last run.
   void finish() const;
 
  private:

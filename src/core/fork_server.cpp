@@ -31,8 +31,9 @@ constexpr char kEnded = 'e';   ///< to the client: exit code, as text
 constexpr std::size_t kLargestMessage = 128 * 1024;  // [bytes]
 
 bool sendMessage(int socket, const std::string& message) {
-  return ::send(socket, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT) ==
-         static_cast<ssize_t>(message.size());
+  return message.size() <= kLargestMessage &&
+         ::send(socket, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT) ==
+             static_cast<ssize_t>(message.size());
 }
 
 /// The next message; empty where the other side is gone, nullopt where there is none yet.
@@ -170,7 +171,7 @@ void ForkServer::begin(const std::vector<std::string>& arguments,
   forked_ = false;
   ended_ = false;
   exit_code_ = -1;
-  sendMessage(control_.get(), request);
+  if (!sendMessage(control_.get(), request)) process_->signal(SIGKILL);  // else the job never ends
 }
 
 bool ForkServer::ended() {

@@ -39,7 +39,8 @@ class ForkServer : public ChildProcess {
   ForkServer(const std::filesystem::path& program, const std::vector<std::string>& arguments);
 
   /// Begins a job; the one before must have ended. `log`: file for its output, emptied; empty: the
-  /// server's own streams. A server that is gone by then ends the job as it ended itself.
+  /// server's own streams. A server that is gone by then ends the job as it ended itself; one that
+  /// cannot be told of the job (more than 128 KiB of arguments) is ended.
   void begin(const std::vector<std::string>& arguments, const std::filesystem::path& log);
   /// Whether the server is there for another job.
   bool serves() { return !process_->ended(); }

@@ -8,8 +8,8 @@
 namespace cdiff::core {
 
 /// SHA-256 of a file's content. A process that keeps content (core/kept_content.h) does not read a
-/// file again whose identity, size and times of change are those of the last time; only if it had
-/// not just been changed then. `what` is what the file holds. Throws as readFile does.
+/// file again whose identity, size and times of change are still the same. A file that was changed
+/// within the last seconds is read again. `what` is what the file holds. Throws as readFile does.
 std::string keptSha256(const std::filesystem::path& file, const std::string& what);
 
 }  // namespace cdiff::core

@@ -144,7 +144,7 @@ const SceneVehicle& egoOf(const RecordedScene& scene) {
       return vehicle;
   }
   throw core::InputError("scenario '" + scene.facts.scenario +
-                         "': a CommonRoad file needs the ego at the begin and after it; choose "
+                         "': a CommonRoad file needs the ego at its start and after it; choose "
                          "--vehicles with ego, and --from where it drives");
 }
 

@@ -23,7 +23,7 @@ enum class ExportedEgo {
 };
 
 /// Text of an OpenSCENARIO 1.2 file of a recorded scene: each vehicle follows the course of its
-/// rear axle as a polyline with absolute times, from 0 s at the scene's begin. A vehicle that
+/// rear axle as a polyline with absolute times, from 0 s at the scene's start. A vehicle that
 /// appears later is added then, one that leaves is deleted. A vehicle with a single state is left
 /// out. World positions are in the map frame, which is also that of the OpenDRIVE file
 /// `network_file`. The same scene gives the same bytes.

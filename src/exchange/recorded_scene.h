@@ -26,7 +26,7 @@ struct SceneOptions {
 
 /// A vehicle at one tick of the scene: center of the box, map frame, SI units.
 struct SceneState {
-  std::uint64_t step = 0;      ///< ticks since the begin of the scene
+  std::uint64_t step = 0;      ///< ticks since the start of the scene
   traffic::VehicleState pose;  ///< the heading is continuous, not wrapped
 };
 
@@ -56,7 +56,7 @@ struct SceneFacts {
 };
 
 /// A recorded session as other programs can replay it: network, courses of the chosen vehicles and
-/// where the session comes from. Map frame, SI units; time counts from the begin of the scene.
+/// where the session comes from. Map frame, SI units; time counts from the start of the scene.
 struct RecordedScene {
   SceneFacts facts;
   double step = 0.05;       ///< time of a tick [s]
@@ -66,7 +66,7 @@ struct RecordedScene {
   bool sizes_known = true;             ///< false: the result lacks vehicles.csv; all are cars of
                                        ///< 4.5 m x 1.8 m
 
-  /// Time of a tick since the begin of the scene [s].
+  /// Time of a tick since the start of the scene [s].
   double seconds(std::uint64_t tick) const { return static_cast<double>(tick) * step; }
   /// Length of the scene [s].
   double duration() const { return seconds(steps); }

@@ -86,7 +86,7 @@ std::string SceneExporter::fileText(const RecordedScene& scene, std::string& rep
   const CommonRoadFile file = commonRoadFile(scene);
   if (file.left_out > 0) {
     report += "  left out: " + std::to_string(file.left_out) +
-              " vehicles that appear after the begin, which CommonRoad cannot hold\n";
+              " vehicles that appear after the start, which CommonRoad cannot hold\n";
   }
   return file.text;
 }

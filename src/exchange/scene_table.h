@@ -9,7 +9,7 @@
 namespace cdiff::exchange {
 
 /// A recorded scene as comma-separated values: a row per tick and vehicle, by tick, with time since
-/// the scene's begin [s], id, role, center of the box (x, y, z [m]), heading [rad], speed [m/s],
+/// the scene's start [s], id, role, center of the box (x, y, z [m]), heading [rad], speed [m/s],
 /// length, width and height [m], in the map frame.
 std::string sceneTable(const RecordedScene& scene);
 

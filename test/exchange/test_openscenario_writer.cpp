@@ -191,7 +191,7 @@ TEST_F(OpenScenarioWriter, AVehicleThatComesLaterIsAddedThenAndDeletedWhenItGoes
   EXPECT_TRUE(named("Action", "delete_late"));
   EXPECT_FALSE(document_.find_node([](const pugi::xml_node& node) {
     return std::strcmp(node.name(), "TeleportAction") == 0;
-  })) << "it is not there at the begin";
+  })) << "it is not there at the start";
 }
 
 }  // namespace
