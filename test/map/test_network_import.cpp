@@ -114,6 +114,10 @@ TEST_F(NetworkImport, NamesWhatIsWrong) {
   expectError(write("packed.net.xml", "\x1f\x8b\x08 <net"), "is compressed");
   expectError(write("empty.xodr", "<a/>"), "no <OpenDRIVE> element");
   expectError(write("typed.xodr", "<!DOCTYPE a SYSTEM \"/dev/zero\"><OpenDRIVE/>"), "<!DOCTYPE>");
+  std::string nested;
+  for (int level = 0; level < 100'000; ++level) nested += "<userData>";
+  for (int level = 0; level < 100'000; ++level) nested += "</userData>";
+  expectError(write("deep.xodr", "<OpenDRIVE>" + nested + "</OpenDRIVE>"), "100001 levels deep");
   expectError(folder_.string(), "is a folder");
 }
 
