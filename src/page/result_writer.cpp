@@ -7,6 +7,7 @@
 
 #include "core/markup.h"
 #include "core/output_folder.h"
+#include "core/stage_times.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/html_report.h"
 #include "record/junit.h"
@@ -67,7 +68,7 @@ class ResultWriter::Record {
       return;  // the same tick again, ended from outside
     last_tick_ = snapshot.tick;
     result_.simulated_seconds = snapshot.time;
-    tick_measures_ = metrics_.observe(snapshot, record.selection);
+    measure(record);
     timeline_.observe(snapshot);
     if (record.actions != nullptr) {
       timeline_.observeAttention(snapshot, *record.actions);
@@ -129,6 +130,11 @@ class ResultWriter::Record {
   const record::SessionResult& result() const { return result_; }
 
  private:
+  void measure(const session::TickRecord& record) {
+    const core::TimedStage stage("metrics");
+    tick_measures_ = metrics_.observe(*record.snapshot, record.selection);
+  }
+
   /// Gives the trace's room back when it cannot be written.
   void writeTrace(const traffic::TrafficSnapshot& snapshot) {
     if (!trace_) return;

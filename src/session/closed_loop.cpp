@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/forked_work.h"
+#include "core/stage_times.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
@@ -130,6 +131,7 @@ struct ClosedLoop::Decision {
 };
 
 void ClosedLoop::render(const traffic::Vehicle& vehicle, int slot, Decision& decision) {
+  const core::TimedStage stage("rendering");
   parts_.cameras->render(world().snapshot(), vehicle, slot, decision.images);
 }
 
@@ -141,6 +143,7 @@ void ClosedLoop::ask(const LoopPlanner& asked, const std::string& name,
     for (const PlanningTask& task : tasks) render(*task.vehicle, task.slot, decision);
     attachImages(decision.images, parts_.cameras->rigs(), tasks);
   }
+  const core::TimedStage stage(tasks.front().slot == traffic::kEgoSlot ? "ego_plan" : "cbv_plans");
   PlannerLatency latency{name, 0.0};
   std::string fault;
   std::set<std::string> recorded;  // vehicles may share a cause
@@ -177,13 +180,21 @@ ClosedLoop::Decision ClosedLoop::decide() {
   const ScenarioOptions& options = setup_.options();
   Decision decision;
   if (!snapshot.steering.empty()) steer(snapshot.steering);
-  decision.selection = parts_.selector->update(snapshot);
+  {
+    const core::TimedStage stage("selection");
+    decision.selection = parts_.selector->update(snapshot);
+  }
   ask(parts_.ego_planner, "ego:" + options.ego_planner,
       egoTasks(snapshot, setup_.egoRoute(), options.target_speed), decision);
   ask(parts_.cbv_planner, "cbv:" + options.cbv_planner,
       cbvTasks(snapshot, decision.selection, setup_, steered_.targetSpeed()), decision);
   if (parts_.image_wish) renderWishes(decision);
   return decision;
+}
+
+void ClosedLoop::show(const TickRecord& record) {
+  const core::TimedStage stage("record");
+  for (SessionObserver* observer : observers_) observer->observe(record);
 }
 
 /// Waits until the next tick may begin; false when the session is to end before it.
@@ -215,9 +226,10 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
       record.images = &decision.images;
       record.latencies = decision.latencies;
     } else {
+      const core::TimedStage stage("selection");
       parts_.selector->observe(snapshot);
     }
-    for (SessionObserver* observer : observers_) observer->observe(record);
+    show(record);
     if (snapshot.status != SessionStatus::kRunning) return snapshot.status;
     if (!holdBack(stop)) {
       parts_.world->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});

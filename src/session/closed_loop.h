@@ -90,6 +90,7 @@ class ClosedLoop {
   struct Decision;
   bool holdBack(const std::atomic<bool>& stop);
   Decision decide();
+  void show(const TickRecord& record);
   void steer(const std::vector<traffic::SteeringChange>& changes);
   void ask(const LoopPlanner& asked, const std::string& name,
            std::vector<planning::PlanningTask> tasks, Decision& decision);

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/stage_times.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "session/driven_vehicles.h"
@@ -88,6 +89,7 @@ void BackgroundTraffic::keepDensity(const Vehicle* ego, const DrivenVehicles& dr
 
 void BackgroundTraffic::refill(const Vehicle* ego, const DrivenVehicles& driven, bool warm_up) {
   if (!demand_) return;
+  const core::TimedStage stage("demand");
   constexpr int kMostTries = 200;
   const Eigen::Vector3d start = setup_.egoRoute().path().pointAt(0.0);
   const Eigen::Vector2d center = ego ? ego->state.position : Eigen::Vector2d(start.head<2>());
@@ -179,6 +181,7 @@ void World::advance(const cbv::CbvSelection* selection,
                     const std::vector<planning::PlannedAction>& actions) {
   if (snapshot_.status != SessionStatus::kRunning)
     throw std::logic_error("the session has already ended");
+  const core::TimedStage stage("world");
   try {
     const std::vector<std::string> removed = std::move(leaving_);
     leaving_.clear();
@@ -319,6 +322,7 @@ void World::collectVehicles(const std::vector<Vehicle>& before) {
 }
 
 void World::takeSnapshot() {
+  const core::TimedStage stage("snapshot");
   const std::vector<Vehicle> before = std::move(snapshot_.vehicles);
   snapshot_.removed.clear();
   snapshot_.steering.clear();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "core/stage_times.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/driven_fleet.h"
@@ -138,11 +139,21 @@ class SumoSimulator::Connection {
 
  private:
   void guardedStep(const std::vector<DrivenVehicle>& driven) {
-    for (const DrivenVehicle& vehicle : driven) fleet_.move(vehicle);
-    libtraci::Simulation::step();
-    observer_.read();
-    fleet_.report(observer_.correctable());
+    {
+      const core::TimedStage stage("moves");
+      for (const DrivenVehicle& vehicle : driven) fleet_.move(vehicle);
+    }
+    {
+      const core::TimedStage stage("sumo_step");
+      libtraci::Simulation::step();
+    }
+    {
+      const core::TimedStage stage("reading");
+      observer_.read();
+      fleet_.report(observer_.correctable());
+    }
     dropWaiting();
+    const core::TimedStage stage("right_of_way");
     grantRightOfWay();
   }
 

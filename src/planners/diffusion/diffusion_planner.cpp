@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/stage_times.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
@@ -118,6 +119,7 @@ std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTas
 /// Encodes each image unless it is the one of the last decision, as before a standing vehicle.
 void DiffusionPlanner::encodeImages(std::uint64_t tick,
                                     const std::vector<PlannedVehicle>& vehicles) {
+  const core::TimedStage stage("encoding");
   std::vector<PlannedVehicle> changed;
   for (const PlannedVehicle& vehicle : vehicles) {
     if (vehicle.memory->takeImage()) changed.push_back(vehicle);
