@@ -56,12 +56,16 @@ struct LoopResult {
   std::map<std::string, double> stages;  ///< [us] of a tick, with those that have no name
 };
 
-LoopResult runLoop(const session::SessionSetup& setup, bool write_results, const fs::path& folder) {
+enum class Results { kNone, kInTurn, kBeside };
+
+/// A session that runs with its results in the same thread, in one beside it, or without them.
+LoopResult runLoop(const session::SessionSetup& setup, Results results, const fs::path& folder) {
   LoopResult result;
   session::ClosedLoop loop(setup);
   page::ResultWriter writer(setup, {"benchmark", loop.world().simulatorVersion(), true}, folder);
   loop.addObserver(result.census);
-  if (write_results) loop.addObserver(writer);
+  if (results != Results::kNone) loop.addObserver(writer);
+  if (results == Results::kBeside) loop.observeBeside();
   const std::atomic<bool> stop{false};
   const core::StageTimes times;
   result.seconds = secondsOf([&] { loop.run(stop); });
@@ -162,24 +166,29 @@ void benchmarkLoop(Figures& figures) {
   ::setenv("SUMO_HOME", "/usr/share/sumo", 0);
   const fs::path folder =
       fs::temp_directory_path() / ("cdiff_benchmark_" + std::to_string(::getpid()));
-  std::vector<double> full, without_results, bare, share, vehicles, cbvs;
+  std::vector<double> full, one_thread, without_results, bare, share, vehicles, cbvs;
   std::map<std::string, std::vector<double>> stages;
   for (std::int64_t seed = 1; seed <= 5; ++seed) {
     const session::SessionSetup setup(town05(seed));
-    const LoopResult with = runLoop(setup, true, folder);
-    const LoopResult without = runLoop(setup, false, folder);
+    const LoopResult with = runLoop(setup, Results::kBeside, folder);
+    const LoopResult in_turn = runLoop(setup, Results::kInTurn, folder);
+    const LoopResult without = runLoop(setup, Results::kNone, folder);
     const auto ticks = static_cast<double>(with.census.ticks);
     full.push_back(ticks / with.seconds);
+    one_thread.push_back(ticks / in_turn.seconds);
     without_results.push_back(static_cast<double>(without.census.ticks) / without.seconds);
     bare.push_back(ticks / bareLoop(setup, with.census.ticks));
     share.push_back(100.0 * full.back() / bare.back());
     for (const auto& [stage, microseconds] : with.stages) stages[stage].push_back(microseconds);
+    for (const std::string stage : {"record", "metrics"})
+      stages["beside_" + stage].push_back(in_turn.stages.at(stage));
     vehicles.push_back(static_cast<double>(with.census.vehicles) / ticks);
     cbvs.push_back(static_cast<double>(with.census.cbvs) / ticks);
   }
   const std::vector<double> node_graph = nodeGraphLoop(folder);
   fs::remove_all(folder);
   figures.push_back({"loop_with_results", median(full), "ticks/s", ">=1000"});
+  figures.push_back({"loop_with_results_in_one_thread", median(one_thread), "ticks/s", ""});
   figures.push_back({"loop_without_results", median(without_results), "ticks/s", ">=1000"});
   figures.push_back({"loop_bare_libtraci", median(bare), "ticks/s", ""});
   figures.push_back({"loop_share_of_bare", median(share), "%", ">=85"});

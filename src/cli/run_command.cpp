@@ -213,6 +213,7 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
           watch::LiveSession* live, const std::atomic<bool>& stop, Clock::time_point begin) {
   const session::ScenarioOptions& options = setup.options();
   const auto reserve = makeReserve(setup, output, loop);
+  if (!reserve) loop.observeBeside();  // plug-ins may use what observers and planners share
   page::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
                             output.folder);
   Progress progress(session::longestTime(options.protocol, setup.egoRoute()),

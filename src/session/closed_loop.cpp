@@ -130,6 +130,13 @@ struct ClosedLoop::Decision {
   std::vector<PlannerLatency> latencies;
 };
 
+/// What is shown of one tick. Observers that may lag get a copy of the snapshot.
+struct ClosedLoop::Tick {
+  Decision decision;
+  traffic::TrafficSnapshot snapshot;  ///< used where observers may lag
+  TickRecord record;
+};
+
 void ClosedLoop::render(const traffic::Vehicle& vehicle, int slot, Decision& decision) {
   const core::TimedStage stage("rendering");
   parts_.cameras->render(world().snapshot(), vehicle, slot, decision.images);
@@ -192,9 +199,38 @@ ClosedLoop::Decision ClosedLoop::decide() {
   return decision;
 }
 
-void ClosedLoop::show(const TickRecord& record) {
+/// Looks at the present tick and decides there; false when the session ended over it.
+bool ClosedLoop::fill(Tick& tick) {
+  const traffic::TrafficSnapshot& snapshot = world().snapshot();
+  tick.record.snapshot = &snapshot;
+  if (!snapshot.decision_tick) {
+    const core::TimedStage stage("selection");
+    parts_.selector->observe(snapshot);
+    return true;
+  }
+  try {
+    tick.decision = decide();
+  } catch (const std::exception& error) {
+    parts_.world->end(SessionStatus::kError, {snapshot.tick, "cbv_identification", error.what()});
+    return false;
+  }
+  tick.record.selection = &tick.decision.selection;
+  tick.record.actions = &tick.decision.actions;
+  tick.record.images = &tick.decision.images;
+  tick.record.latencies = tick.decision.latencies;
+  return true;
+}
+
+/// To the observers here, or to those `beside`.
+void ClosedLoop::show(const std::shared_ptr<Tick>& tick, ObserverThread* beside) {
   const core::TimedStage stage("record");
-  for (SessionObserver* observer : observers_) observer->observe(record);
+  if (beside != nullptr) {
+    tick->snapshot = world().snapshot();
+    tick->record.snapshot = &tick->snapshot;
+    beside->show({tick, &tick->record});
+    return;
+  }
+  for (SessionObserver* observer : observers_) observer->observe(tick->record);
 }
 
 /// Waits until the next tick may begin; false when the session is to end before it.
@@ -208,35 +244,21 @@ bool ClosedLoop::holdBack(const std::atomic<bool>& stop) {
 }
 
 SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
+  const auto beside = beside_ ? std::make_unique<ObserverThread>(observers_) : nullptr;
   while (true) {
-    const traffic::TrafficSnapshot& snapshot = parts_.world->snapshot();
-    TickRecord record;
-    record.snapshot = &snapshot;
-    Decision decision;
-    if (snapshot.decision_tick) {
-      try {
-        decision = decide();
-      } catch (const std::exception& error) {
-        parts_.world->end(SessionStatus::kError,
-                          {snapshot.tick, "cbv_identification", error.what()});
-        continue;
-      }
-      record.selection = &decision.selection;
-      record.actions = &decision.actions;
-      record.images = &decision.images;
-      record.latencies = decision.latencies;
-    } else {
-      const core::TimedStage stage("selection");
-      parts_.selector->observe(snapshot);
-    }
-    show(record);
-    if (snapshot.status != SessionStatus::kRunning) return snapshot.status;
+    const auto tick = std::make_shared<Tick>();
+    if (!fill(*tick)) continue;
+    show(tick, beside.get());
+    const traffic::TrafficSnapshot& snapshot = world().snapshot();
+    if (snapshot.status != SessionStatus::kRunning) break;
     if (!holdBack(stop)) {
       parts_.world->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
       continue;
     }
-    parts_.world->advance(record.selection, decision.actions);
+    parts_.world->advance(tick->record.selection, tick->decision.actions);
   }
+  if (beside) beside->finish();
+  return world().snapshot().status;
 }
 
 }  // namespace cdiff::session

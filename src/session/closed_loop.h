@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "session/observer_thread.h"
 #include "session/session_observer.h"
 #include "session/vehicle_cameras.h"
 #include "session/world.h"
@@ -80,6 +81,10 @@ class ClosedLoop {
 
   /// Observers are called in the order added and must outlive the run.
   void addObserver(SessionObserver& observer) { observers_.push_back(&observer); }
+  /// Observers are called in a thread of their own, which may lag behind the session, but not
+  /// beyond the end of `run`. They must use nothing that the session changes but what they are
+  /// given.
+  void observeBeside() { beside_ = true; }
   /// Runs to the end; `stop` (from a signal handler) ends the session as interrupted.
   traffic::SessionStatus run(const std::atomic<bool>& stop);
   const World& world() const { return *parts_.world; }
@@ -88,9 +93,11 @@ class ClosedLoop {
 
  private:
   struct Decision;
+  struct Tick;
   bool holdBack(const std::atomic<bool>& stop);
   Decision decide();
-  void show(const TickRecord& record);
+  bool fill(Tick& tick);
+  void show(const std::shared_ptr<Tick>& tick, ObserverThread* beside);
   void steer(const std::vector<traffic::SteeringChange>& changes);
   void ask(const LoopPlanner& asked, const std::string& name,
            std::vector<planning::PlanningTask> tasks, Decision& decision);
@@ -101,6 +108,7 @@ class ClosedLoop {
   LoopParts parts_;
   SteeredCbvs steered_;
   std::vector<SessionObserver*> observers_;
+  bool beside_ = false;
 };
 
 }  // namespace cdiff::session
