@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "cli/progress.h"
 #include "core/clock.h"
 #include "core/program.h"
+#include "core/stage_times.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/result_writer.h"
@@ -227,7 +229,9 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   BagRecording bag(setup, output, loop);
   VideoRecord video(setup, output.folder, loop);
   try {
+    const auto times = core::wantedStageTimes();
     loop.run(stop);
+    core::writeStageTimes(times.get());
   } catch (const std::exception&) {
     if (writer.failure().empty()) throw;
     bag.discard();
@@ -258,12 +262,19 @@ struct PreparedRun {
   std::optional<session::LoopParts> parts = {};  ///< absent: not made yet
 };
 
+/// Makes the drivable area of the level that the ego starts on, which the first tick needs.
+void makeStartLevel(const session::SessionSetup& setup) {
+  const Eigen::Vector3d start = setup.egoRoute().path().pointAt(0.0);
+  setup.drivableArea().contains(start.head<2>(), start.z());
+}
+
 /// Claims the folder and runs the session.
 int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
   const RunOutput& output = run.output;
   const session::SessionSetup& setup = run.setup;
   if (!run.parts) run.parts = session::makeParts(setup);
   const Clock::time_point begin = Clock::now();
+  const auto level = std::async(std::launch::async, makeStartLevel, std::cref(setup));
   const auto claim = [&] {
     return record::ResultFolder(output.folder, "cdiff run", output.overwrite);
   };
@@ -430,9 +441,7 @@ core::ForkedRun prepareRun(const std::vector<std::string>& words) {
   std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 takes them
   program.parse(reversed);
   const std::shared_ptr<PreparedRun> run = prepare(arguments);
-  // The level that the ego starts on is made here: children cannot hand on what they make.
-  const Eigen::Vector3d start = run->setup.egoRoute().path().pointAt(0.0);
-  run->setup.drivableArea().contains(start.head<2>(), start.z());
+  makeStartLevel(run->setup);  // here: children cannot hand on what they make
   // A plug-in's planner may remember in its library what it did before: its child makes it anew.
   if (plugins::loadPlugins().empty()) run->parts = session::makeParts(run->setup);
   return [run] { return runSession(*run, core::catchStopSignals()); };

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace cdiff::core {
@@ -46,5 +47,13 @@ class TimedStage {
   Clock::time_point begin_;
   Clock::duration inside_{};  ///< of the stages within this one
 };
+
+/// Names a file in the environment that gets the times of a session's stages, a line "STAGE
+/// SECONDS" each (`scripts/benchmark graph` reads it).
+inline constexpr const char* kStagesVariable = "E2E_CDIFF_STAGES_FILE";
+/// Measures this thread where the variable names a file; else nullptr.
+std::unique_ptr<StageTimes> wantedStageTimes();
+/// Writes that file; does nothing for nullptr. Throws InputError when it cannot be written.
+void writeStageTimes(const StageTimes* times);
 
 }  // namespace cdiff::core

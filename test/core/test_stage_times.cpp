@@ -2,9 +2,15 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
+#include "core/file.h"
+#include "core/scratch_folder.h"
 #include "core/stage_times.h"
 
 namespace cdiff::core {
@@ -64,6 +70,27 @@ TEST(StageTimes, ASecondInTheSameThreadIsRefused) {
   const StageTimes times;
   EXPECT_THROW(StageTimes(), std::logic_error);
   const TimedStage still_measured("stage");
+}
+
+TEST(StageTimes, TheWantedFileHasALineForEachStage) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "stages";
+  EXPECT_EQ(wantedStageTimes(), nullptr);
+  ::setenv(kStagesVariable, file.c_str(), 1);
+  {
+    const auto times = wantedStageTimes();
+    ASSERT_NE(times, nullptr);
+    for (const char* name : {"reading", "moves"}) const TimedStage stage(name);
+    writeStageTimes(times.get());
+  }
+  ::unsetenv(kStagesVariable);
+  std::istringstream lines(readFile(file, "stages"));
+  std::string first, second;
+  double first_seconds = -1.0, second_seconds = -1.0;
+  lines >> first >> first_seconds >> second >> second_seconds;
+  EXPECT_EQ(first + " " + second, "moves reading");
+  EXPECT_GE(first_seconds, 0.0);
+  EXPECT_GE(second_seconds, 0.0);
 }
 
 }  // namespace

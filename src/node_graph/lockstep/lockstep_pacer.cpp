@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/stage_times.h"
 #include "node_graph/lockstep/decision_tracker.h"
 #include "node_graph/messages/session_conversions.h"
 
@@ -84,7 +85,10 @@ void LockstepPacer::sendAgainForLateListener() {
 }
 
 TickInput LockstepPacer::advance() {
-  output_.keep(published_, answers_);
+  {
+    const core::TimedStage stage("reserve");
+    output_.keep(published_, answers_);
+  }
   if (!published_->decision_tick) return {};
   const std::vector<Answer> answers = answers_.answers(*published_);
   reportFaults(answers);

@@ -6,6 +6,7 @@
 
 #include "core/markup.h"
 #include "core/program.h"
+#include "core/stage_times.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
@@ -135,7 +136,11 @@ int TrafficSimulatorNode::run() {
   route_.publish(shared(toPathMsg(setup_->egoRoute())));
   if (const auto end = waitForParticipants()) endSession(*end);
   pacer_->begin();
-  runTicks();
+  {
+    const auto times = core::wantedStageTimes();
+    runTicks();
+    core::writeStageTimes(times.get());
+  }
   services_.reset();
   writeWaits(pacer_->waits());
   waitForResult();
@@ -300,12 +305,17 @@ std::string TrafficSimulatorNode::misdirected() {
 void TrafficSimulatorNode::runTicks() {
   publishTick();
   while (world_->snapshot().status == SessionStatus::kRunning) {
-    std::optional<SessionEnd> end = pacer_->wait();
+    std::optional<SessionEnd> end = waitForAnswers();
     if (!end) end = holdBack();
     if (!end) end = advance();
     if (end) endSession(*end);
     publishTick();
   }
+}
+
+std::optional<SessionEnd> TrafficSimulatorNode::waitForAnswers() {
+  const core::TimedStage stage("wait");
+  return pacer_->wait();
 }
 
 /// Waits while the session is paused, or ahead of the pace that it is to keep at most.
@@ -323,6 +333,7 @@ std::optional<SessionEnd> TrafficSimulatorNode::holdBack() {
 }
 
 void TrafficSimulatorNode::publishTick() {
+  const core::TimedStage stage("publish");
   const traffic::TrafficSnapshot& snapshot = world_->snapshot();
   const bool final = snapshot.status != SessionStatus::kRunning;
   if (final) pacer_->close();

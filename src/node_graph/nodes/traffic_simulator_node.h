@@ -63,6 +63,7 @@ class TrafficSimulatorNode {
   std::string misdirected();
   std::optional<SessionEnd> waitForParticipants();
   void runTicks();
+  std::optional<SessionEnd> waitForAnswers();
   std::optional<SessionEnd> holdBack();
   void publishTick();
   void addTotals(::e2e_cdiff::TrafficSnapshot& message) const;
