@@ -79,58 +79,99 @@ LoopResult runLoop(const session::SessionSetup& setup, Results results, const fs
   return result;
 }
 
-/// Nothing but libtraci: the same town, demand, subscriptions and number of moved vehicles.
-double bareLoop(const session::SessionSetup& setup, std::size_t ticks) {
-  using libtraci::Simulation;
-  using libtraci::Vehicle;
-  simulation::DemandOptions demand_options = setup.options().traffic;
-  simulation::DemandGenerator demand(demand_options, setup.graph(), setup.egoRoute(), 1);
-  const Eigen::Vector3d start = setup.egoRoute().path().pointAt(0.0);
-  Simulation::start({"sumo", "-n", setup.import().file.string(), "--step-length", "0.05",
-                     "--no-step-log", "--no-warnings", "--collision.action", "none",
-                     "--xml-validation", "never", "--time-to-teleport", "-1"});
-  const std::vector<int> variables = {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE,
-                                      libsumo::VAR_SPEED, libsumo::VAR_ACCELERATION,
-                                      libsumo::VAR_LANE_ID};
-  std::vector<traffic::Vehicle> present;
-  while (auto wanted = demand.next(present, start.head<2>(), start.z(), true)) {
-    libtraci::Route::add("route_" + wanted->id, wanted->edges);
-    Vehicle::add(wanted->id, "route_" + wanted->id, "DEFAULT_VEHTYPE", "now",
-                 std::to_string(wanted->depart_lane), std::to_string(wanted->depart_position),
-                 std::to_string(wanted->depart_speed));
-    Vehicle::subscribe(wanted->id, variables);
-    const auto lanes = setup.network().lanesOfEdge(wanted->edges.front());
-    const auto& line =
-        setup.network().lane(lanes[static_cast<std::size_t>(wanted->depart_lane)]).centerline;
-    traffic::Vehicle placed;
-    placed.id = wanted->id;
-    const Eigen::Vector3d point = line.pointAt(wanted->depart_position);
-    placed.state = {point.head<2>(), point.z(), line.headingAt(wanted->depart_position),
-                    wanted->depart_speed};
-    present.push_back(placed);
-    if (present.size() >= 50) break;
-  }
-  Simulation::step();
-  const std::vector<std::string> ids = Vehicle::getIDList();
-  const std::vector<std::string> moved(ids.begin(),
-                                       ids.begin() + std::min<std::size_t>(3, ids.size()));
-  std::vector<libsumo::TraCIPosition> places;
-  std::vector<double> angles;
-  for (const std::string& id : moved) {
-    places.push_back(Vehicle::getPosition(id));
-    angles.push_back(Vehicle::getAngle(id));
-  }
-  const double seconds = secondsOf([&] {
-    for (std::size_t tick = 0; tick < ticks; ++tick) {
-      for (std::size_t i = 0; i < moved.size(); ++i)
-        Vehicle::moveToXY(moved[i], "", -1, places[i].x, places[i].y, angles[i], 3, 20.0);
-      Simulation::step();
-      Vehicle::getAllSubscriptionResults();
+/// Nothing but libtraci: the same town, demand, density, subscriptions and number of moved
+/// vehicles.
+class BareTraffic {
+ public:
+  explicit BareTraffic(const session::SessionSetup& setup)
+      : setup_(setup), demand_(setup.options().traffic, setup.graph(), setup.egoRoute(), 1) {
+    libtraci::Simulation::start({"sumo", "-n", setup.import().file.string(), "--step-length",
+                                 "0.05", "--no-step-log", "--no-warnings", "--collision.action",
+                                 "none", "--xml-validation", "never", "--time-to-teleport", "-1",
+                                 "--lanechange.duration", "3"});
+    fill(true);
+    libtraci::Simulation::step();
+    for (const std::string& id : libtraci::Vehicle::getIDList()) {
+      if (moved_.size() == kMoved) break;
+      moved_.push_back({id, libtraci::Vehicle::getPosition(id), libtraci::Vehicle::getAngle(id)});
     }
-  });
-  Simulation::close();
-  return seconds;
-}
+  }
+  ~BareTraffic() { libtraci::Simulation::close(); }
+
+  /// Seconds of so many ticks, and their vehicles; what fills the traffic up is not counted.
+  double run(std::size_t ticks, double& vehicles) {
+    double seconds = 0.0;
+    for (std::size_t tick = 0; tick < ticks; ++tick) {
+      if (tick % 20 == 19) fill(false);
+      seconds += secondsOf([&] {
+        for (const Moved& each : moved_)
+          libtraci::Vehicle::moveToXY(each.id, "", -1, each.place.x, each.place.y, each.angle, 3,
+                                      20.0);
+        libtraci::Simulation::step();
+        seen_ = libtraci::Vehicle::getAllSubscriptionResults();
+      });
+      vehicles += static_cast<double>(seen_.size()) / static_cast<double>(ticks);
+    }
+    return seconds;
+  }
+
+ private:
+  static constexpr std::size_t kMoved = 3;
+  struct Moved {
+    std::string id;
+    libsumo::TraCIPosition place;
+    double angle = 0.0;
+  };
+
+  void fill(bool at_start) {
+    constexpr std::size_t kVehicles = 55;
+    const Eigen::Vector3d start = setup_.egoRoute().path().pointAt(0.0);
+    std::vector<traffic::Vehicle> present = presentVehicles();
+    while (present.size() < kVehicles) {
+      const auto wanted = demand_.next(present, start.head<2>(), start.z(), at_start);
+      if (!wanted) return;
+      add(*wanted);
+      const auto lane = setup_.network().lanesOfEdge(
+          wanted->edges.front())[static_cast<std::size_t>(wanted->depart_lane)];
+      const Eigen::Vector3d place =
+          setup_.network().lane(lane).centerline.pointAt(wanted->depart_position);
+      present.push_back(vehicleAt(wanted->id, place.x(), place.y()));
+    }
+  }
+
+  void add(const simulation::DemandVehicle& wanted) {
+    libtraci::Route::add("route_" + wanted.id, wanted.edges);
+    libtraci::Vehicle::add(wanted.id, "route_" + wanted.id, "DEFAULT_VEHTYPE", "now",
+                           std::to_string(wanted.depart_lane),
+                           std::to_string(wanted.depart_position),
+                           std::to_string(wanted.depart_speed));
+    libtraci::Vehicle::subscribe(wanted.id,
+                                 {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE, libsumo::VAR_SPEED,
+                                  libsumo::VAR_ACCELERATION, libsumo::VAR_LANE_ID});
+  }
+
+  static traffic::Vehicle vehicleAt(const std::string& id, double x, double y) {
+    traffic::Vehicle vehicle;
+    vehicle.id = id;
+    vehicle.state.position = {x, y};
+    return vehicle;
+  }
+
+  std::vector<traffic::Vehicle> presentVehicles() const {
+    std::vector<traffic::Vehicle> vehicles;
+    for (const auto& [id, values] : seen_) {
+      const auto place =
+          std::static_pointer_cast<libsumo::TraCIPosition>(values.at(libsumo::VAR_POSITION3D));
+      vehicles.push_back(vehicleAt(id, place->x, place->y));
+    }
+    return vehicles;
+  }
+
+  const session::SessionSetup& setup_;
+  simulation::DemandGenerator demand_;
+  std::vector<Moved> moved_;
+  libsumo::SubscriptionResults seen_;
+};
 
 /// Ticks per second of the same session as a graph of ROS nodes; runs the script that
 /// E2E_CDIFF_SESSION names.
@@ -166,7 +207,8 @@ void benchmarkLoop(Figures& figures) {
   ::setenv("SUMO_HOME", "/usr/share/sumo", 0);
   const fs::path folder =
       fs::temp_directory_path() / ("cdiff_benchmark_" + std::to_string(::getpid()));
-  std::vector<double> full, one_thread, without_results, bare, share, vehicles, cbvs;
+  std::vector<double> full, one_thread, without_results, bare, bare_vehicles, share, sumo_share,
+      vehicles, cbvs;
   std::map<std::string, std::vector<double>> stages;
   for (std::int64_t seed = 1; seed <= 5; ++seed) {
     const session::SessionSetup setup(town05(seed));
@@ -179,7 +221,10 @@ void benchmarkLoop(Figures& figures) {
     full.push_back(ticks / with.seconds);
     one_thread.push_back(ticks / in_turn.seconds);
     without_results.push_back(static_cast<double>(without.census.ticks) / without.seconds);
-    bare.push_back(ticks / bareLoop(setup, with.census.ticks));
+    double bare_count = 0.0;
+    bare.push_back(ticks / BareTraffic(setup).run(with.census.ticks, bare_count));
+    bare_vehicles.push_back(bare_count);
+    sumo_share.push_back(100.0 * with.stages.at("sumo_step") * ticks / 1e6 / with.seconds);
     share.push_back(100.0 * full.back() / bare.back());
     for (const auto& [stage, microseconds] : with.stages) stages[stage].push_back(microseconds);
     for (const std::string stage : {"record", "metrics"})
@@ -194,9 +239,11 @@ void benchmarkLoop(Figures& figures) {
   figures.push_back({"loop_without_results", median(without_results), "ticks/s", ">=1000"});
   figures.push_back({"loop_bare_libtraci", median(bare), "ticks/s", ""});
   figures.push_back({"loop_share_of_bare", median(share), "%", ">=85"});
+  figures.push_back({"loop_sumo_share", median(sumo_share), "%", ""});
   if (!node_graph.empty())
     figures.push_back({"loop_node_graph_recording", median(node_graph), "ticks/s", ""});
   figures.push_back({"loop_vehicles", median(vehicles), "vehicles", ""});
+  figures.push_back({"loop_bare_vehicles", median(bare_vehicles), "vehicles", ""});
   figures.push_back({"loop_cbvs_driven", median(cbvs), "vehicles", ""});
   for (const auto& [stage, microseconds] : stages)
     figures.push_back({"loop_stage_" + stage, median(microseconds), "us/tick", ""});

@@ -14,9 +14,12 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "metrics/metric_registry.h"
+#include "metrics/session_metrics.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/result_reserve.h"
 #include "page/result_writer.h"
+#include "plugins/plugin_loader.h"
 #include "record/result_folder.h"
 #include "ros/ros.h"
 
@@ -91,6 +94,16 @@ int writeUnstarted(const session::ScenarioOptions& options, const fs::path& fold
 
 }  // namespace
 
+bool isPlugin(const std::string& source) { return source.rfind("plug-in ", 0) == 0; }
+
+void leaveOutPluginMetrics() {
+  for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
+    if (!isPlugin(metric.source)) continue;
+    metrics::leaveOutMetric(metric.name, "metric '" + metric.name + "' of " + metric.source +
+                                             " is left out: the metrics node did not finish");
+  }
+}
+
 fs::path resultFolder(const std::string& given, const session::ScenarioOptions& options) {
   return fs::absolute(given.empty() ? ownFolder(options) : fs::path(given)).lexically_normal();
 }
@@ -105,6 +118,8 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
                          const traffic::Fault& fault) {
   fs::path folder;
   try {
+    plugins::loadPlugins();  // the scenario may have their keys
+    leaveOutPluginMetrics();
     enterFolder(parameters.text("folder"));
     folder = askedFolder(parameters);
     const bool replaces = status == traffic::SessionStatus::kInterrupted;

@@ -16,6 +16,12 @@ namespace cdiff::node_graph {
 /// "roslaunch", as results name this deployment.
 inline constexpr const char* kDeployment = "roslaunch";
 
+/// Whether a planner's or metric's source is a plug-in.
+bool isPlugin(const std::string& source);
+/// Leaves the metrics of plug-ins out of the results of this process, and says so in them: one of
+/// them may be why the metrics node did not finish.
+void leaveOutPluginMetrics();
+
 /// Absolute result folder: the one given, else HOME/e2e_cdiff_results/SCENARIO_seedN_TIME.
 std::filesystem::path resultFolder(const std::string& given,
                                    const session::ScenarioOptions& options);
@@ -38,8 +44,9 @@ void enterFolder(const std::string& folder);
 /// Writes the result of a session that its nodes left without one, which its simulator was to run
 /// with these parameters, and returns the exit code of `cdiff`. It is made of the ticks that the
 /// simulator kept, where its process died; else it has none. A result (file exit_code) that
-/// this launch has already written stays, unless the session was interrupted. Bad input is reported
-/// in one line, with exit code 3.
+/// this launch has already written stays, unless the session was interrupted. Loads plug-ins, so
+/// this process must have one thread; their metrics are left out. Bad input is reported in one
+/// line, with exit code 3.
 int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,
                          const traffic::Fault& fault);
 

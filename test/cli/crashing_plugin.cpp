@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// A plug-in for the tests that ends or stops the program: its planner as the key quitter.end says,
-/// its metric where the variable CRASHING_METRIC is set. Both drive and measure for a while before.
+/// its metric as the variable CRASHING_METRIC says. Both drive and measure for a while before.
 #include <class_loader/class_loader.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -68,8 +68,8 @@ constexpr cdiff::metrics::MeasureDefinition kCalls = {
 class CrashingMetric : public cdiff::metrics::Metric {
  public:
   void observe(const cdiff::metrics::MetricTick&) override {
-    const bool ends = std::getenv("CRASHING_METRIC") != nullptr;
-    if (++calls_ > kCallsBefore && ends) endProgram("segmentation_fault");
+    const char* end = std::getenv("CRASHING_METRIC");
+    if (++calls_ > kCallsBefore && end != nullptr) endProgram(end);
   }
   void report(cdiff::metrics::MetricSink& sink) const override {
     sink.set(kCalls, {static_cast<double>(calls_), 1, "", ""});

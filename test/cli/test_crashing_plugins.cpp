@@ -115,7 +115,7 @@ TEST_F(CrashingPlugins, ASecondSignalEndsAPlannerWithoutAnAnswer) {
 }
 
 TEST_F(CrashingPlugins, AMetricThatEndsTheProgramIsNamedAndLeftOut) {
-  ::setenv("CRASHING_METRIC", "yes", 1);
+  ::setenv("CRASHING_METRIC", "segmentation_fault", 1);
   EXPECT_EQ(cdiff(session("none")), 2) << output();
   expectResult("error", "metric 'crashing_metric'");
   EXPECT_TRUE(summary()["metrics"]["crashing_calls"]["value"].is_null());

@@ -247,7 +247,7 @@ TEST_F(SessionFaults, PluginsOfANodeThatCrashesAreNamed) {
 }
 
 TEST_F(SessionFaults, ACrashingMetricIsNamedAndLeftOut) {
-  session_.start("export CRASHING_METRIC=yes E2E_CDIFF_PLUGINS=" CRASHING_PLUGIN
+  session_.start("export CRASHING_METRIC=segmentation_fault E2E_CDIFF_PLUGINS=" CRASHING_PLUGIN
                  "; exec roslaunch -p " +
                  std::to_string(session_.port()) +
                  " e2e_cdiff session.launch scenario:=crossing_straight cbv_planner:=pdm_lite "

@@ -111,6 +111,60 @@ TEST_P(NodeletCrash, LeavesTheResultOfTheTicksBefore) {
 
 INSTANTIATE_TEST_SUITE_P(NodeletCrash, NodeletCrash, ::testing::Values(SIGSEGV, SIGKILL));
 
+/// A session with the crashing plug-in.
+std::string scriptWithPlugin(const test::LaunchedSession& session, const std::string& variables,
+                             const std::string& arguments) {
+  return "export E2E_CDIFF_PLUGINS=" CRASHING_PLUGIN " " + variables + "; " + script(session) +
+         " " + arguments;
+}
+
+TEST(NodeletSession, AMetricThatHangsIsNamedAndCostsItsOwnMeasuresAlone) {
+  test::LaunchedSession session;
+  session.start(scriptWithPlugin(session, "CRASHING_METRIC=endless", "answer_timeout:=3"));
+  EXPECT_LT(session.endAfter(60.0), 60.0);
+  EXPECT_EQ(session.exitCode(), "2\n") << session.log();
+  EXPECT_EQ(session.summary()["status"], "error");
+  EXPECT_EQ(session.fault().rfind("metrics_node: ", 0), 0U) << session.fault();
+  EXPECT_NE(session.fault().find("it calls metric 'crashing_metric'"), std::string::npos)
+      << session.fault();
+  // The plug-in hangs at its sixth tick: five and more were driven.
+  EXPECT_GE(session.summary()["simulated_seconds"], 0.25);
+  EXPECT_TRUE(session.summary()["metrics"]["crashing_calls"]["value"].is_null());
+  EXPECT_EQ(session.leftovers(), "");
+}
+
+/// Where the plug-in ends the process of all nodes: variables and arguments of the session.
+struct CrashingNodelet {
+  const char* variables;
+  const char* arguments;
+};
+
+class NodeletFault : public ::testing::TestWithParam<CrashingNodelet> {};
+
+TEST_P(NodeletFault, EndsTheSessionWithAResult) {
+  test::LaunchedSession session;
+  session.start(scriptWithPlugin(session, GetParam().variables, GetParam().arguments));
+  EXPECT_LT(session.endAfter(60.0), 60.0);
+  EXPECT_EQ(session.exitCode(), "2\n") << session.log();
+  EXPECT_EQ(session.summary()["status"], "error");
+  EXPECT_EQ(session.fault(),
+            "session_nodelets: the process of all nodes ended before the session did, by signal " +
+                std::to_string(SIGSEGV))
+      << session.log();
+  EXPECT_FALSE(fs::exists(session.results() / ".reserve"));
+  EXPECT_EQ(session.leftovers(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(NodeletFault, NodeletFault,
+                         ::testing::Values(CrashingNodelet{"CRASHING_METRIC=segmentation_fault",
+                                                           ""},
+                                           CrashingNodelet{"",
+                                                           "ego_planner:=quitter "
+                                                           "set:=quitter.end=segmentation_fault"},
+                                           CrashingNodelet{"",
+                                                           "cbv_planner:=quitter "
+                                                           "set:=quitter.end=segmentation_fault"}));
+
 TEST(NodeletSession, ANodeletThatIsUnloadedEndsTheSessionAndIsNamed) {
   test::LaunchedSession session;
   session.launch(std::string("ns:=a ") + kLong);

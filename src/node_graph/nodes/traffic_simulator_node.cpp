@@ -39,8 +39,6 @@ std::vector<std::string> knownParameters() {
 /// In a namespace a session is one of several on a master, whose clocks would contradict.
 bool ownsClock() { return ros::this_node::getNamespace() == "/"; }
 
-bool isPlugin(const std::string& source) { return source.rfind("plug-in ", 0) == 0; }
-
 /// What of plug-ins a node calls, as the end of a sentence about its end; empty where nothing.
 std::string pluginsOf(const std::string& node, const session::ScenarioOptions& options) {
   std::string text;
@@ -58,15 +56,6 @@ std::string pluginsOf(const std::string& node, const session::ScenarioOptions& o
       text += "; it calls metric '" + metric.name + "' of " + metric.source;
   }
   return text;
-}
-
-/// One of them may be why the metrics node did not finish.
-void leaveOutPluginMetrics() {
-  for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
-    if (!isPlugin(metric.source)) continue;
-    metrics::leaveOutMetric(metric.name, "metric '" + metric.name + "' of " + metric.source +
-                                             " is left out: the metrics node did not finish");
-  }
 }
 
 const char* paceText(session::SessionControl::State state) {
