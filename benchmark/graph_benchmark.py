@@ -5,7 +5,7 @@
 Runs the same session on a town by turns: in one process with results, as nodes with a bag, and as nodelets with a bag; each once for 10 s and
 once for S seconds of simulated time. A rate is the ticks by which the two differ by the wall time by which their results do, so no start
 counts. A share is the median over the rounds of a rate by that of the one process beside it. All three must give the same trace. A wait is
-the mean time from a tick to the handling of an answer to it.
+the mean time from a tick to the handling of an answer to it. A stage is what a tick spends in the thread of the session or of the simulator.
 """
 import argparse
 import json
@@ -46,18 +46,31 @@ def one_process(session, keys, seed, results):
     cdiff = Path(os.environ.get("BUILD", "build")) / "devel/lib/e2e_cdiff/cdiff"
     options = [part for name, value in session.items() for part in ("--" + name.replace("_", "-"), value)]
     settings = [part for key in keys for part in ("--set", key)]
-    return run([cdiff.as_posix(), "run", *options, *settings, "--seed", str(seed), "--results", str(results), "--quiet"], results, {})
+    return run([cdiff.as_posix(), "run", *options, *settings, "--seed", str(seed), "--results", str(results), "--quiet"], results,
+               {"E2E_CDIFF_STAGES_FILE": str(stages_file(results))})
 
 
 def graph(kind, session, keys, seed, results):
     """The same of the node graph, which leaves its mean waits beside the results."""
     arguments = [f"{name}:={value}" for name, value in session.items()]
     return run(["scripts/session", *arguments, f"set:={' '.join(keys)}", f"seed:={seed}", f"results:={results}", "record:=true",
-                f"nodelets:={'true' if kind == 'nodelets' else 'false'}"], results, {"E2E_CDIFF_WAITS_FILE": str(waits_file(results))})
+                f"nodelets:={'true' if kind == 'nodelets' else 'false'}"], results,
+               {"E2E_CDIFF_WAITS_FILE": str(waits_file(results)), "E2E_CDIFF_STAGES_FILE": str(stages_file(results))})
 
 
 def waits_file(results):
     return results.with_suffix(".waits")
+
+
+def stages_file(results):
+    return results.with_suffix(".stages")
+
+
+def stages_of(results):
+    """Time of each stage [us] in a tick."""
+    ticks = json.loads((results / "summary.json").read_text())["simulated_seconds"] / STEP
+    pairs = (line.split() for line in stages_file(results).read_text().splitlines())
+    return {stage: float(seconds) / ticks * 1e6 for stage, seconds in pairs}
 
 
 def rate(kind, session, seconds, seed, results):
@@ -77,7 +90,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=60.0, help="simulated time of a session [s]")
     options = parser.parse_args()
     session = town(Path(os.environ.get("E2E_CDIFF_DATA", "../shared/data")))
-    rates, waits = {"one_process": [], "nodes": [], "nodelets": []}, {}
+    rates, waits, stages = {"one_process": [], "nodes": [], "nodelets": []}, {}, {}
     with tempfile.TemporaryDirectory() as scratch:
         for seed in range(1, options.rounds + 1):
             traces = set()
@@ -85,6 +98,7 @@ def main():
                 value, trace, results = rate(kind, session, options.seconds, seed, Path(scratch))
                 values.append(value)
                 traces.add(trace)
+                stages[kind] = stages_of(results)
                 if kind in GOALS:
                     waits[kind] = json.loads(waits_file(results).read_text())
             if len(traces) != 1:
@@ -96,6 +110,9 @@ def main():
     for kind, channels in waits.items():
         for channel, milliseconds in channels.items():
             print(f"graph_{kind}_wait_{channel} {milliseconds:.3f} ms -")
+    for kind, times in stages.items():
+        for stage, microseconds in times.items():
+            print(f"graph_{kind}_stage_{stage} {microseconds:.0f} us/tick -")
     return 0
 
 
