@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -301,7 +302,7 @@ void World::release(const std::string& id) {
 void World::stepSimulator() { simulator_->step(driven_.moves()); }
 
 void World::collectVehicles(const std::vector<Vehicle>& before) {
-  std::unordered_map<std::string, double> headings;
+  std::unordered_map<std::string_view, double> headings;
   for (const Vehicle& vehicle : before) headings.emplace(vehicle.id, vehicle.state.heading);
   snapshot_.vehicles = driven_.snapshot(simulator_->vehicles());
   for (const SimulatedVehicle& simulated : simulator_->vehicles()) {
@@ -314,7 +315,7 @@ void World::collectVehicles(const std::vector<Vehicle>& before) {
     }
     snapshot_.vehicles.push_back(std::move(vehicle));
   }
-  std::unordered_set<std::string> present;
+  std::unordered_set<std::string_view> present;
   for (const Vehicle& vehicle : snapshot_.vehicles) present.insert(vehicle.id);
   for (const Vehicle& vehicle : before) {
     if (present.count(vehicle.id) == 0) snapshot_.removed.push_back(vehicle.id);

@@ -13,12 +13,18 @@ namespace {
 
 using libsumo::TraCIResults;
 
-double numberOf(const TraCIResults& results, int variable) {
-  return std::static_pointer_cast<libsumo::TraCIDouble>(results.at(variable))->value;
+/// The value of a variable, which has this type in TraCI.
+template <class Value>
+const Value& valueOf(const TraCIResults& results, int variable) {
+  return static_cast<const Value&>(*results.at(variable));
 }
 
-std::string textOf(const TraCIResults& results, int variable) {
-  return std::static_pointer_cast<libsumo::TraCIString>(results.at(variable))->value;
+double numberOf(const TraCIResults& results, int variable) {
+  return valueOf<libsumo::TraCIDouble>(results, variable).value;
+}
+
+const std::string& textOf(const TraCIResults& results, int variable) {
+  return valueOf<libsumo::TraCIString>(results, variable).value;
 }
 
 /// A vehicle that is not in the network yet reports this sentinel as its position.
@@ -114,19 +120,24 @@ void TrafficObserver::read() {
     if (dimensions_.count(id) == 0) subscribe(id);
   }
   waiting_.clear();
-  const libsumo::SubscriptionResults all = libtraci::Vehicle::getAllSubscriptionResults();
-  vehicles_.clear();
-  for (const auto& [id, results] : all) {
-    const auto known = dimensions_.find(id);
-    if (known == dimensions_.end() || results.count(libsumo::VAR_POSITION3D) == 0) continue;
-    const auto front =
-        std::static_pointer_cast<libsumo::TraCIPosition>(results.at(libsumo::VAR_POSITION3D));
-    if (placed(*front)) vehicles_.push_back(vehicleFrom(id, results, *front, known->second));
-  }
-  for (auto known = dimensions_.begin(); known != dimensions_.end();) {
-    known = all.count(known->first) == 0 ? dimensions_.erase(known) : std::next(known);
-  }
+  readVehicles();
   readSignals();
+}
+
+/// Goes through what SUMO reports and what is known, both by id; forgets what SUMO does not report.
+void TrafficObserver::readVehicles() {
+  vehicles_.clear();
+  auto known = dimensions_.begin();
+  for (const auto& [id, results] : libtraci::Vehicle::getAllSubscriptionResults()) {
+    while (known != dimensions_.end() && known->first < id) known = dimensions_.erase(known);
+    if (known == dimensions_.end()) break;
+    if (known->first != id) continue;
+    const traffic::VehicleDimensions& dimensions = (known++)->second;
+    if (results.count(libsumo::VAR_POSITION3D) == 0) continue;
+    const auto& front = valueOf<libsumo::TraCIPosition>(results, libsumo::VAR_POSITION3D);
+    if (placed(front)) vehicles_.push_back(vehicleFrom(id, results, front, dimensions));
+  }
+  dimensions_.erase(known, dimensions_.end());
 }
 
 void TrafficObserver::show(const traffic::SignalState& changed) {

@@ -36,6 +36,7 @@ class TrafficObserver {
 
  private:
   void subscribe(const std::string& id);
+  void readVehicles();
   void readSignals();
 
   bool lights_green_ = true;
