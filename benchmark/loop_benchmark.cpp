@@ -53,7 +53,7 @@ class Census : public session::SessionObserver {
 struct LoopResult {
   double seconds = 0.0;
   Census census;
-  std::map<std::string, double> stages;  ///< [us] of a tick, with those that have no name
+  std::map<std::string, double> stages;  ///< [us] of a tick
 };
 
 enum class Results { kNone, kInTurn, kBeside };
@@ -69,13 +69,9 @@ LoopResult runLoop(const session::SessionSetup& setup, Results results, const fs
   const std::atomic<bool> stop{false};
   const core::StageTimes times;
   result.seconds = secondsOf([&] { loop.run(stop); });
-  double named = 0.0;
   const double ticks_per_microsecond = static_cast<double>(result.census.ticks) / 1e6;
-  for (const auto& [stage, seconds] : times.seconds()) {
+  for (const auto& [stage, seconds] : times.seconds())
     result.stages[stage] = seconds / ticks_per_microsecond;
-    named += seconds;
-  }
-  result.stages["rest"] = (result.seconds - named) / ticks_per_microsecond;
   return result;
 }
 

@@ -244,6 +244,7 @@ bool ClosedLoop::holdBack(const std::atomic<bool>& stop) {
 }
 
 SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
+  const core::TimedStage stage("rest");
   const auto beside = beside_ ? std::make_unique<ObserverThread>(observers_) : nullptr;
   while (true) {
     const auto tick = std::make_shared<Tick>();

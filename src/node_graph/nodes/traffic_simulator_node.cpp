@@ -292,6 +292,7 @@ std::string TrafficSimulatorNode::misdirected() {
 }
 
 void TrafficSimulatorNode::runTicks() {
+  const core::TimedStage stage("rest");
   publishTick();
   while (world_->snapshot().status == SessionStatus::kRunning) {
     std::optional<SessionEnd> end = waitForAnswers();
