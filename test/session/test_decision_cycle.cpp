@@ -7,8 +7,10 @@
 
 #include <chrono>
 #include <functional>
+#include <future>
 #include <stdexcept>
 #include <thread>
+#include <tuple>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "session/closed_loop.h"
@@ -131,6 +133,60 @@ TEST(DecisionCycle, AsksEgoAndCbvAtEverySecondTick) {
   }
   EXPECT_EQ(record.images, (std::vector<std::vector<int>>{{}, {}}));
   EXPECT_EQ(record.faults, std::vector<std::string>{"user"});
+}
+
+/// Notes tick, place of the ego and number of actions of each record; begins once it is let go.
+class Late : public SessionObserver {
+ public:
+  explicit Late(std::future<void> begin) : begin_(std::move(begin)) {}
+  void observe(const TickRecord& record) override {
+    if (seen.empty()) begin_.wait();
+    const double x = record.snapshot->ego()->state.position.x();
+    const std::size_t actions = record.actions == nullptr ? 0 : record.actions->size();
+    seen.emplace_back(record.snapshot->tick, x, actions);
+  }
+  std::vector<std::tuple<std::uint64_t, double, std::size_t>> seen;
+
+ private:
+  std::future<void> begin_;
+};
+
+/// What is seen of a session that its ego's second decision stops: at once, or beside the session
+/// and only from that decision on.
+auto seenOf(bool beside) {
+  Cycle cycle;
+  std::promise<void> begin;
+  Late late(begin.get_future());
+  if (!beside) begin.set_value();
+  std::atomic<bool> stop{false};
+  int decisions = 0;
+  cycle.parts.ego_planner = {std::make_unique<Braking>([&](const PlanningTask&) {
+    stop = ++decisions == 2;
+    if (stop && beside) begin.set_value();
+  })};
+  cycle.run(late, stop, [&](ClosedLoop& loop) {
+    if (beside) loop.observeBeside();
+  });
+  return late.seen;
+}
+
+TEST(DecisionCycle, ObserversThatLagSeeEachTickAsItWas) {
+  const auto seen = seenOf(true);
+  ASSERT_EQ(seen.size(), 4U) << "ticks 0 to 2 and the end";
+  EXPECT_EQ(std::get<0>(seen[0]), 0U);
+  EXPECT_EQ(std::get<2>(seen[2]), 2U) << "ego and CBV";
+  EXPECT_EQ(seen, seenOf(false));
+}
+
+TEST(DecisionCycle, WhatAnObserverBesideThrowsEndsTheSession) {
+  class Broken : public SessionObserver {
+   public:
+    void observe(const TickRecord&) override { throw std::runtime_error("the disk is full"); }
+  } broken;
+  Cycle cycle;
+  const std::atomic<bool> stop{false};
+  EXPECT_THROW(cycle.run(broken, stop, [](ClosedLoop& loop) { loop.observeBeside(); }),
+               std::runtime_error);
 }
 
 TEST(DecisionCycle, APlannerThatThrowsIsFullBrakingAndOneFaultADecision) {
