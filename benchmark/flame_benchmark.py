@@ -25,6 +25,11 @@ NARROWEST = 0.5  # [px] of a box that is drawn
 FREQUENCY = 999  # [1/s]
 
 
+def refuse(text, exit_code):
+    print(f"benchmark: {text}", file=sys.stderr)
+    sys.exit(exit_code)
+
+
 def record(seconds, data):
     """Samples one session into a file of perf."""
     session = town(Path(os.environ.get("E2E_CDIFF_DATA", "../shared/data")))
@@ -35,7 +40,7 @@ def record(seconds, data):
                            cdiff.as_posix(), "run", *options, *settings, "--results", str(data.parent / "session"), "--quiet"],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if not data.is_file() or done.returncode not in (0, 1):
-        sys.exit(f"benchmark: perf could not sample the session; /proc/sys/kernel/perf_event_paranoid must be 1 or less, or run as root\n{done.stdout[-2000:]}")
+        refuse(f"perf could not sample the session; /proc/sys/kernel/perf_event_paranoid must be 1 or less, or run as root\n{done.stdout[-2000:]}", 2)
 
 
 def fold(lines):
@@ -47,8 +52,8 @@ def fold(lines):
                 stacks[(program, *reversed(frames))] += 1
             frames = []
         elif line[0].isspace():
-            name = re.sub(r"\+0x[0-9a-f]+( \(.*\))?$|\(.*", "", line.split(None, 1)[1].strip()).strip()
-            frames.append(name.replace(";", ":") or "unknown")
+            name = line.split(None, 1)[1].strip().replace("(anonymous namespace)::", "")
+            frames.append(re.sub(r"\(.*", "", name).strip().replace(";", ":") or "unknown")
         else:
             program = line.split()[0]
     return stacks
@@ -95,14 +100,14 @@ def main():
     parser.add_argument("--output", type=Path, default=Path("flame.svg"))
     options = parser.parse_args()
     if shutil.which("perf") is None:
-        sys.exit("benchmark: the program perf is missing; install it: apt-get install linux-perf")
+        refuse("the program perf is missing; install it: apt-get install linux-perf", 3)
     with tempfile.TemporaryDirectory() as scratch:
         data = Path(scratch) / "perf.data"
         record(options.seconds, data)
         script = subprocess.run(["perf", "script", "-i", str(data), "-F", "comm,ip,sym"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         stacks = fold(script.stdout.splitlines())
     if not stacks:
-        sys.exit("benchmark: perf took no sample")
+        refuse("perf took no sample", 2)
     options.output.with_suffix(".folded").write_text("".join(f"{';'.join(stack)} {samples}\n" for stack, samples in sorted(stacks.items())))
     options.output.write_text(picture(stacks))
     print(f"flame_samples {sum(stacks.values())} samples -")
