@@ -7,17 +7,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <map>
 #include <thread>
 #include <utility>
 
-#include "core/clock.h"
 #include "core/folder_access.h"
-#include "core/markup.h"
-#include "core/text.h"
+#include "core/holder.h"
+#include "core/host.h"
 
 namespace cdiff::core {
 namespace {
@@ -27,41 +25,15 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds kPatience{1};
 constexpr std::chrono::milliseconds kPeriod{20};
 
-std::string hostName() {
-  std::array<char, 256> name{};
-  ::gethostname(name.data(), name.size() - 1);
-  return name.data();
-}
-
-/// Lines "key: value" of a lock file.
-std::map<std::string, std::string> contentOf(int descriptor) {
-  std::array<char, 1024> buffer{};
-  const ssize_t count = ::pread(descriptor, buffer.data(), buffer.size(), 0);
-  std::map<std::string, std::string> content;
-  for (const std::string& line :
-       splitText({buffer.data(), static_cast<std::size_t>(count > 0 ? count : 0)}, '\n')) {
-    const std::size_t colon = line.find(": ");
-    if (colon != std::string::npos) content[line.substr(0, colon)] = line.substr(colon + 2);
-  }
-  return content;
-}
-
-std::string holderText(int descriptor) {
-  constexpr std::size_t kMostLetters = 80;
-  auto content = contentOf(descriptor);
-  for (auto& [key, value] : content) value = cutText(value, kMostLetters);
-  return "'" + content["program"] + "', process " + content["process"] + " on host " +
-         content["host"] + ", since " + content["since"];
-}
-
 InputError heldBy(const fs::path& folder, int descriptor) {
-  return InputError("'" + folder.string() + "' is being written by " + holderText(descriptor) +
+  return InputError("'" + folder.string() + "' is being written by " +
+                    holderText(holderFacts(descriptor)) +
                     "; wait until it has ended, or give another folder");
 }
 
 bool isLock(int descriptor) {
   struct stat status {};
-  const auto content = contentOf(descriptor);
+  const auto content = holderFacts(descriptor);
   return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && content.size() == 4 &&
          content.count("host") + content.count("process") + content.count("program") +
                  content.count("since") ==
@@ -99,6 +71,14 @@ void FolderLock::requireUnlocked(const fs::path& folder) {
     throw heldBy(folder, file.get());
 }
 
+void FolderLock::removeLeftBehind(const fs::path& folder) {
+  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const fs::path path = folder / kFile;
+  const FileDescriptor file(::open(path.c_str(), kFlags));
+  if (file && isLock(file.get()) && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0)
+    ::unlink(path.c_str());
+}
+
 FolderLock::~FolderLock() {
   if (isSameFile(descriptor_.get(), directory_.get(), kFile))
     ::unlinkat(directory_.get(), kFile, 0);
@@ -132,7 +112,7 @@ bool FolderLock::placeSigned() {
   std::string draft = file.string() + ".XXXXXX";
   FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
   if (!descriptor) failOn(file, "write", errno);
-  const std::string text = signature();
+  const std::string text = holderSignature(program_);
   const bool written =
       ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor.get(), 0644) == 0 &&
       ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
@@ -162,21 +142,16 @@ bool FolderLock::takeOver() {
   }
   if (!isSameFile(descriptor_.get(), directory_.get(), kFile)) return false;
   // The kernel of another host may not have announced its lock to ours.
-  if (contentOf(descriptor_.get())["host"] != hostName()) {
+  if (holderFacts(descriptor_.get())["host"] != hostName()) {
     throw InputError("'" + folder_.string() + "' is being written by " +
-                     holderText(descriptor_.get()) + "; if that process is gone, delete '" +
-                     file.string() + "'");
+                     holderText(holderFacts(descriptor_.get())) +
+                     "; if that process is gone, delete '" + file.string() + "'");
   }
-  const std::string text = signature();
+  const std::string text = holderSignature(program_);
   if (::ftruncate(descriptor_.get(), 0) != 0 ||
       ::pwrite(descriptor_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
     failOn(file, "write", errno);
   return true;
-}
-
-std::string FolderLock::signature() const {
-  return "host: " + hostName() + "\nprocess: " + std::to_string(::getpid()) +
-         "\nprogram: " + program_ + "\nsince: " + timeText() + "\n";
 }
 
 }  // namespace cdiff::core

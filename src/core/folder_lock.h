@@ -21,6 +21,9 @@ class FolderLock {
 
   /// Throws the constructor's InputError where another process holds the folder now; makes nothing.
   static void requireUnlocked(const std::filesystem::path& folder);
+  /// Removes the file of a process that no kernel says to hold it. For callers who know that the
+  /// process is gone, also where it was one of another host.
+  static void removeLeftBehind(const std::filesystem::path& folder);
 
   /// Makes the folder and its parents. `program` names this writer to a second one ("cdiff run").
   /// Throws InputError naming host and process of the writer that holds it, why the folder or the
@@ -37,7 +40,6 @@ class FolderLock {
   bool placeSigned();
   bool takeOver();
   void removeMade() const;
-  std::string signature() const;
 
   std::filesystem::path folder_;
   std::string program_;

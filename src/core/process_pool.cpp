@@ -52,10 +52,11 @@ class ProcessPool {
     while (!stop_ && !queue_.empty() && static_cast<int>(running_.size()) < limits_.at_a_time) {
       const std::size_t number = queue_.front();
       queue_.pop_front();
-      const ProcessJob job = calls_.start(number);
+      const std::optional<ProcessJob> job = calls_.start(number);
+      if (!job) continue;
       Running started;
       started.job = number;
-      started.process = server_ ? serve(job) : startAlone(job);
+      started.process = server_ ? serve(*job) : startAlone(*job);
       running_.push_back(std::move(started));
     }
   }

@@ -47,8 +47,9 @@ struct PoolServer {
 
 /// Callbacks of a pool.
 struct PoolCalls {
-  /// Called just before a job's process starts; returns what to run.
-  std::function<ProcessJob(std::size_t job)> start;
+  /// Called just before a job's process starts; returns what to run, or nothing where the job is
+  /// not to be run any more.
+  std::function<std::optional<ProcessJob>(std::size_t job)> start;
   /// Called when it has ended; returns whether to run the job again, before the others.
   std::function<bool(const ProcessEnd& end)> ended;
 };

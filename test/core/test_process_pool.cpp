@@ -39,6 +39,22 @@ class ProcessPool : public testing::Test {
   test::TemporaryFolder scratch_;
 };
 
+TEST_F(ProcessPool, LeavesOutAJobThatGivesNothingToRun) {
+  PoolCalls calls;
+  calls.start = [&](std::size_t job) {
+    ++starts_[job];
+    return job == 1 ? std::nullopt : std::make_optional(ProcessJob{"/bin/true", {}});
+  };
+  calls.ended = [&](const ProcessEnd& end) {
+    ends_[end.job] = end;
+    return false;
+  };
+  runProcesses({0, 1, 2}, {}, stop_, calls);
+  EXPECT_EQ(starts_, (std::map<std::size_t, int>{{0, 1}, {1, 1}, {2, 1}}));
+  EXPECT_EQ(ends_.size(), 2U);
+  EXPECT_EQ(ends_.count(1), 0U);
+}
+
 TEST_F(ProcessPool, RunsEveryJobAndKeepsItsExitCode) {
   PoolLimits limits;
   limits.at_a_time = 2;

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "core/lease.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+#include "core/folder_access.h"
+#include "core/holder.h"
+#include "core/host.h"
+
+namespace cdiff::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBeatDigits = 12;
+
+/// The beat stands last, with a fixed number of digits, so that it is changed in place.
+std::string beatText(std::size_t number) {
+  const std::string digits = std::to_string(number);
+  return std::string(kBeatDigits - std::min(kBeatDigits, digits.size()), '0') + digits + "\n";
+}
+
+FileDescriptor openLease(const fs::path& file) {
+  constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  return FileDescriptor(::open(file.c_str(), kFlags));
+}
+
+}  // namespace
+
+Lease::~Lease() {
+  // A file of a later generation belongs to whoever took the work over.
+  ::unlink(file_.c_str());
+}
+
+bool Lease::isHeld() const {
+  struct stat own {};
+  struct stat named {};
+  return ::fstat(descriptor_.get(), &own) == 0 && ::lstat(file_.c_str(), &named) == 0 &&
+         isSame(own, named);
+}
+
+void Lease::beat(std::size_t number) const {
+  struct stat status {};
+  if (::fstat(descriptor_.get(), &status) != 0) return;
+  const std::string text = beatText(number);
+  const off_t place = status.st_size - static_cast<off_t>(text.size());
+  // Where the folder is gone, isHeld() says so.
+  if (::pwrite(descriptor_.get(), text.data(), text.size(), place) < 0) return;
+  ::fsync(descriptor_.get());
+}
+
+LeaseFolder::LeaseFolder(fs::path folder, const LeaseTerms& terms)
+    : folder_(std::move(folder)), terms_(terms) {}
+
+LeaseFolder::~LeaseFolder() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  if (beating_.joinable()) beating_.join();
+}
+
+std::map<std::string, LeaseFolder::Generations> LeaseFolder::list() const {
+  std::map<std::string, Generations> found;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder_, none)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t dot = name.rfind('.');
+    const std::string digits = dot == std::string::npos ? "" : name.substr(dot + 1);
+    if (dot == 0 || digits.empty() || digits.size() > 9 ||
+        digits.find_first_not_of("0123456789") != std::string::npos)
+      continue;
+    found[name.substr(0, dot)][std::stoul(digits)] = entry.path();
+  }
+  return found;
+}
+
+bool LeaseFolder::isLeftBehind(const fs::path& file) {
+  const FileDescriptor descriptor = openLease(file);
+  if (!descriptor) return false;  // released just now
+  const auto facts = holderFacts(descriptor.get());
+  const auto boot = facts.find("boot");
+  const bool here = boot != facts.end() && boot->second == bootId();
+  if (here) return ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0;
+  Seen& seen = seen_[file.filename().string()];
+  const auto now = std::chrono::steady_clock::now();
+  if (seen.facts != facts) seen = {facts, now};
+  return std::chrono::duration<double>(now - seen.since).count() > terms_.expiry;
+}
+
+/// Gives a file that is signed and locked already its name; none where the name is taken.
+FileDescriptor LeaseFolder::place(const fs::path& file) const {
+  std::string draft = (folder_ / ".draft.XXXXXX").string();
+  FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
+  if (!descriptor) failOn(file, "write", errno);
+  const std::string text =
+      holderSignature(terms_.program) + "boot: " + bootId() + "\nbeat: " + beatText(0);
+  const bool written =
+      ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor.get(), 0644) == 0 &&
+      ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+  const int reason = written ? placeUnlessThere(draft, file) : errno;
+  ::unlink(draft.c_str());
+  if (reason != 0 && reason != EEXIST) failOn(file, "write", reason);
+  return reason == 0 ? std::move(descriptor) : FileDescriptor();
+}
+
+std::shared_ptr<const Lease> LeaseFolder::claim(const std::string& name) {
+  makeFolder(folder_);
+  const Generations before = list()[name];
+  for (const auto& [generation, file] : before) {
+    if (!isLeftBehind(file)) return nullptr;
+  }
+  const std::size_t next = before.empty() ? 1 : before.rbegin()->first + 1;
+  const fs::path file = folder_ / (name + "." + std::to_string(next));
+  FileDescriptor descriptor = place(file);
+  if (!descriptor) return nullptr;
+  // NOLINTNEXTLINE(modernize-make-shared): the constructor is private
+  const std::shared_ptr<const Lease> lease(new Lease(file, std::move(descriptor), !before.empty()));
+  const Generations after = list()[name];
+  for (const auto& [generation, other] : after) {
+    const bool known = generation == next || before.count(generation) != 0;
+    if (!known) return nullptr;  // somebody claimed it from another list: nobody gets it now
+  }
+  for (const auto& [generation, left] : before) ::unlink(left.c_str());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  held_.push_back(lease);
+  if (!beating_.joinable()) beating_ = std::thread([this] { keepBeating(); });
+  return lease;
+}
+
+std::map<std::string, std::string> LeaseFolder::holders() {
+  std::map<std::string, std::string> found;
+  for (const auto& [name, generations] : list()) {
+    const fs::path& file = generations.rbegin()->second;
+    const FileDescriptor descriptor = openLease(file);
+    if (descriptor && !isLeftBehind(file)) found[name] = holderText(holderFacts(descriptor.get()));
+  }
+  return found;
+}
+
+void LeaseFolder::removeLeftBehind() {
+  for (const auto& [name, generations] : list()) {
+    for (const auto& [generation, file] : generations) {
+      if (isLeftBehind(file)) ::unlink(file.c_str());
+    }
+  }
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder_, none)) {
+    const bool draft = entry.path().filename().string().rfind(".draft.", 0) == 0;
+    const FileDescriptor descriptor = draft ? openLease(entry.path()) : FileDescriptor();
+    if (descriptor && ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0)
+      ::unlink(entry.path().c_str());
+  }
+  ::rmdir(folder_.c_str());  // refused where a lease is in it
+}
+
+void LeaseFolder::keepBeating() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const auto period = std::chrono::duration<double>(terms_.beat);
+  for (std::size_t number = 1; !changed_.wait_for(lock, period, [this] { return ending_; });
+       ++number)
+    beatAll(number);
+}
+
+void LeaseFolder::beatAll(std::size_t number) {
+  std::vector<std::weak_ptr<const Lease>> held;
+  for (const auto& entry : held_) {
+    const auto lease = entry.lock();
+    if (!lease) continue;
+    lease->beat(number);
+    held.push_back(entry);
+  }
+  held_ = std::move(held);
+}
+
+}  // namespace cdiff::core
