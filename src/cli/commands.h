@@ -32,6 +32,7 @@ void addSuiteCommand(CLI::App& program, int& exit_code);
 void addSteeringCommand(CLI::App& program, int& exit_code);
 void addTuneCommand(CLI::App& program, int& exit_code);
 void addWhatIfCommand(CLI::App& program, int& exit_code);
+void addWorkerCommand(CLI::App& program, int& exit_code);
 /// Runs the sessions of `cdiff evaluate`; not listed.
 void addServeCommand(CLI::App& program, int& exit_code);
 /// Where the program is built with ROS.

@@ -21,6 +21,7 @@
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
 #include "evaluation/paper/table_definitions.h"
+#include "evaluation/plan_file.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/separation/ego_ranking.h"
 #include "evaluation/suite_selection.h"
@@ -55,9 +56,18 @@ struct EvaluateArguments {
 
 constexpr const char* kMatrixFile = "matrix.yaml";
 /// What a batch writes beside its runs, and what --overwrite replaces.
-const std::vector<std::string> kBatchFiles = {
-    "runs.csv",    "summary.json", "summary.md",      "junit.xml",        "index.html", "table.md",
-    "compare.csv", "left_out.txt", "ego_ranking.csv", "ego_ranking.html", kMatrixFile};
+const std::vector<std::string> kBatchFiles = {"runs.csv",
+                                              "summary.json",
+                                              "summary.md",
+                                              "junit.xml",
+                                              "index.html",
+                                              "table.md",
+                                              "compare.csv",
+                                              "left_out.txt",
+                                              "ego_ranking.csv",
+                                              "ego_ranking.html",
+                                              evaluation::PlanFile::kName,
+                                              kMatrixFile};
 const std::vector<std::string> kBatchFolders = {"runs", "tables", "figures"};
 
 /// The Bench2Drive routes of the arguments.
@@ -206,7 +216,8 @@ std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
   options.resume = arguments.resume;
   options.chosen = isNow;
   options.repeated = [&](const auto& cause, const auto& ids) { progress.repeated(cause, ids); };
-  options.ended = [&](const RunRecord& record, bool resumed) { progress.ended(record, resumed); };
+  options.ended = [&](const RunRecord& record) { progress.ended(record, false); };
+  options.kept = [&](const RunRecord& record) { progress.ended(record, true); };
   auto records = evaluation::executeRuns(plan, options, core::catchStopSignals());
   progress.finish();
   return records;

@@ -9,9 +9,8 @@
 #include "core/program.h"
 #include "core/spelling.h"
 #include "core/text.h"
-#include "diffusion/network/cpu_denoiser.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "inference/precision.h"
+#include "evaluation/plan_file.h"
 #include "plugins/plugin_loader.h"
 #include "record/session_yaml.h"
 
@@ -37,13 +36,10 @@ std::string sumoVersion() {
 /// What `cdiff --version` prints: package version and revision, SUMO's version, and the instruction
 /// sets that the program was compiled for and that its networks use on this machine; a line each.
 std::string versionText() {
-  using diffusion::CpuDenoiser;
   const std::string sumo = sumoVersion();
   return "cdiff " + record::packageVersion() + "\nrevision " + record::packageRevision() +
          "\nSUMO " + (sumo.empty() ? "not found: install the package sumo" : sumo) +
-         "\ninstruction set " + record::instructionSet() + "; encoder with " +
-         inference::oneDnnInstructionSet("auto") + ", denoiser with " +
-         CpuDenoiser::toText(CpuDenoiser::bestInstructionSet());
+         "\ninstruction set " + evaluation::instructionSets();
 }
 
 }  // namespace
@@ -70,6 +66,7 @@ void addCommands(CLI::App& program, int& exit_code) {
   addSteeringCommand(program, exit_code);
   addTuneCommand(program, exit_code);
   addWhatIfCommand(program, exit_code);
+  addWorkerCommand(program, exit_code);
 #ifdef E2E_CDIFF_WITH_ROS
   addReplayCommand(program, exit_code);
   addCollectCommand(program, exit_code);

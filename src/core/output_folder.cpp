@@ -86,8 +86,10 @@ class Record {
   const std::set<std::string>& names() const { return names_; }
   bool lists(const std::string& name) const { return names_.count(name) != 0; }
 
-  void add(const std::string& name) {
-    if (names_.insert(name).second) store();
+  void add(const std::set<std::string>& names) {
+    const std::size_t before = names_.size();
+    names_.insert(names.begin(), names.end());
+    if (names_.size() != before) store();
   }
   /// A record without names is removed.
   void erase(const std::set<std::string>& names) {
@@ -261,7 +263,7 @@ fs::path OutputFolder::claim(const std::string& name) {
     const fs::path folder = path();
     Record record(descriptor_.get(), folder, true);
     requireOwn(descriptor_.get(), folder, name, record);
-    record.add(name);
+    record.add({name});
     return folder / name;
   });
 }
@@ -333,6 +335,16 @@ fs::path OutputFolder::subfolder(const std::string& name) {
   if (!isThere(descriptor_.get(), name, status)) claim(name);
   makeFolder(folder / name);
   return folder / name;
+}
+
+void OutputFolder::makeSubfolders(const std::vector<std::string>& names) {
+  std::set<std::string> missing;
+  for (const std::string& name : names) {
+    struct stat status {};
+    if (!isThere(descriptor_.get(), name, status)) missing.insert(name);
+  }
+  again([&] { Record(descriptor_.get(), path(), true).add(missing); });
+  for (const std::string& name : names) makeFolder(path() / name);
 }
 
 PendingFile::PendingFile(OutputFolder& folder, const std::string& name, std::size_t room)

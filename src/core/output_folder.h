@@ -72,6 +72,8 @@ class OutputFolder {
   /// Makes a folder in it and returns its path. Throws InputError when something else has that
   /// name.
   std::filesystem::path subfolder(const std::string& name);
+  /// The same for many, whose names enter the record at once.
+  void makeSubfolders(const std::vector<std::string>& names);
 
  private:
   friend class PendingFile;

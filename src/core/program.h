@@ -16,6 +16,7 @@ struct ExitCode {
   static constexpr int kVerdictFailed = 1;  ///< of a session: a rule of its verdict is not met
   static constexpr int kRunTimeError = 2;   ///< the program or SUMO failed
   static constexpr int kBadInput = 3;       ///< the user must change the input
+  static constexpr int kReturned = 75;      ///< of a worker: stopped, and its run returned
   static constexpr int kInterrupted = 130;  ///< stopped by a stop signal
   static constexpr int kSignal = 128;       ///< plus the number of the signal that ended a process
 };

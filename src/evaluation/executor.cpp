@@ -3,233 +3,149 @@
 #include "evaluation/executor.h"
 
 #include <algorithm>
-#include <deque>
-#include <map>
-#include <optional>
 #include <set>
 
-#include "core/file.h"
 #include "core/output_folder.h"
-#include "core/process_pool.h"
-#include "core/program.h"
-#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/plan_file.h"
 #include "evaluation/run_order.h"
 
 namespace cdiff::evaluation {
-namespace {
 
 namespace fs = std::filesystem;
-using core::ExitCode;
 
-/// The last line that a run wrote; empty when there is none.
-std::string lastLine(const fs::path& log) {
-  if (!fs::is_regular_file(log)) return "";
-  const auto lines = core::splitText(core::readFile(log, "log"), '\n');
-  return lines.empty() ? "" : lines.back();
+void Executor::announce() {
+  if (options_.resume) refuseRenamed();
+  for (std::size_t i = 0; i < plan_.size(); ++i) enqueue(i);
+  orderQueue(now_);
+  informCaller();
+  for (const std::size_t index : now_) {
+    core::OutputFolder::requireFree(folderOf(index), {"record.json", "scenario.yaml", "log.txt"});
+    queue_.push_back(plan_[index].id);
+  }
+  writeRecords();
+  writePlan(options_.results, {programSha256(), instructionSets(), options_.timeout,
+                               options_.retries, options_.server.empty(), queue_});
 }
 
-std::string causeOf(int exit_code, const std::string& fault, const fs::path& log) {
-  if (!fault.empty()) return fault;
-  const std::string line = lastLine(log);
-  if (exit_code > ExitCode::kSignal) {
-    return "the process ended by signal " + std::to_string(exit_code - ExitCode::kSignal);
+/// A run that an earlier version called otherwise would count twice.
+void Executor::refuseRenamed() const {
+  std::map<Factors, std::string> ids;
+  std::set<std::string> planned_ids;
+  for (const PlannedRun& run : plan_) {
+    ids[run.factors] = run.id;
+    planned_ids.insert(run.id);
   }
-  return "exit code " + std::to_string(exit_code) + (line.empty() ? "" : ": " + line);
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(options_.results / "runs", none)) {
+    const auto record = readRecord(entry.path() / "record.json");
+    const auto planned = record ? ids.find(record->factors) : ids.end();
+    if (planned == ids.end() || planned_ids.count(record->id) != 0) continue;
+    throw core::InputError("'" + entry.path().string() + "' holds the run that is called '" +
+                           planned->second +
+                           "' by this version; begin the batch again (--overwrite), or give "
+                           "another --results");
+  }
 }
 
-/// One batch of `cdiff evaluate`: what is to run now waits in `queue_`, the rest of the plan keeps
-/// its record. Runs, records and folders are addressed by their place in the plan.
-class Executor {
- public:
-  Executor(const std::vector<PlannedRun>& plan, const ExecutorOptions& options,
-           const std::atomic<bool>& stop)
-      : plan_(plan), options_(options), stop_(stop) {}
+fs::path Executor::folderOf(std::size_t index) const {
+  return runFolder(options_.results, plan_[index].id);
+}
 
-  std::vector<RunRecord> execute() {
-    if (options_.resume) refuseRenamed();
-    for (std::size_t i = 0; i < plan_.size(); ++i) enqueue(i);
-    orderQueue();
-    announceRuns();
-    std::optional<core::PoolServer> server;
-    if (!options_.server.empty()) server = {options_.program, options_.server};
-    core::runProcesses(queue_, {options_.jobs, options_.timeout, options_.grace}, stop_,
-                       {[this](std::size_t index) { return start(index); },
-                        [this](const core::ProcessEnd& end) { return finish(end); }},
-                       server);
-    return std::move(records_);
-  }
+/// Gives the run a record, and puts it in line unless its earlier result stands.
+void Executor::enqueue(std::size_t index) {
+  records_.push_back(recordOf(plan_[index]));
+  if (options_.resume && staysOrIsCounted(index)) return;
+  (isChosen(index) ? now_ : later_).push_back(index);
+}
 
- private:
-  /// A run that an earlier version called otherwise would count twice.
-  void refuseRenamed() const {
-    std::map<Factors, std::string> ids;
-    std::set<std::string> planned_ids;
-    for (const PlannedRun& run : plan_) {
-      ids[run.factors] = run.id;
-      planned_ids.insert(run.id);
-    }
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(options_.results / "runs", none)) {
-      const auto record = readRecord(entry.path() / "record.json");
-      const auto planned = record ? ids.find(record->factors) : ids.end();
-      if (planned == ids.end() || planned_ids.count(record->id) != 0) continue;
-      throw core::InputError("'" + entry.path().string() + "' holds the run that is called '" +
-                             planned->second +
-                             "' by this version; begin the batch again (--overwrite), or give "
-                             "another --results");
-    }
-  }
+void Executor::orderQueue(std::deque<std::size_t>& queue) const {
+  const std::vector<std::size_t> order = runOrder(plan_);
+  std::vector<std::size_t> places(plan_.size());
+  for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = i;
+  std::sort(queue.begin(), queue.end(),
+            [&](std::size_t left, std::size_t right) { return places[left] < places[right]; });
+}
 
-  fs::path folderOf(std::size_t index) const {
-    return runFolder(options_.results, plan_[index].id);
-  }
+bool Executor::isChosen(std::size_t index) const {
+  return !options_.chosen || options_.chosen(plan_[index]);
+}
 
-  /// Gives the run a record, and puts it in line unless its earlier result stands.
-  void enqueue(std::size_t index) {
-    records_.push_back(recordOf(plan_[index]));
-    if (options_.resume && staysOrIsCounted(index)) return;
-    (isChosen(index) ? queue_ : later_).push_back(index);
-  }
-  void orderQueue() {
-    const std::vector<std::size_t> order = runOrder(plan_);
-    std::vector<std::size_t> places(plan_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) places[order[i]] = i;
-    std::sort(queue_.begin(), queue_.end(),
-              [&](std::size_t left, std::size_t right) { return places[left] < places[right]; });
-  }
-  bool isChosen(std::size_t index) const {
-    return !options_.chosen || options_.chosen(plan_[index]);
-  }
-
-  /// Whether the result of an earlier batch stands; else, of a chosen run, the cause to run it
-  /// again is counted.
-  bool staysOrIsCounted(std::size_t index) {
-    const auto earlier = readRecord(folderOf(index) / "record.json");
-    if (!earlier) return false;
-    std::string cause = causeToRepeat(*earlier, plan_[index]);
-    if (cause.empty() && !fs::is_regular_file(folderOf(index) / "summary.json"))
-      cause = "summary.json missing";
-    if (!cause.empty()) {
-      if (isChosen(index)) repeated_[cause].push_back(plan_[index].id);
-      return false;
-    }
-    core::OutputFolder(folderOf(index)).removeUnfinished();  // of a batch that was killed there
-    records_.back() = *earlier;
-    resumed_.push_back(index);
-    return true;
-  }
-
-  /// Each run that is still to come gets a record that says so, whatever stops the batch later.
-  void announceRuns() {
-    for (const auto& [cause, ids] : repeated_) {
-      if (options_.repeated) options_.repeated(cause, ids);
-    }
-    for (const std::size_t index : resumed_) {
-      if (options_.ended && isChosen(index)) options_.ended(records_[index], true);
-    }
-    for (const std::size_t index : queue_)
-      core::OutputFolder::requireFree(folderOf(index), {"record.json", "scenario.yaml", "log.txt"});
-    for (const std::size_t index : queue_) writeRecord(index);
-    for (const std::size_t index : later_) {
-      if (!fs::exists(folderOf(index) / "record.json")) writeRecord(index);
-    }
-  }
-
-  void writeRecord(std::size_t index) const {
-    core::OutputFolder runs(core::OutputFolder(options_.results).subfolder("runs"));
-    core::writeOwnFile(runs.subfolder(plan_[index].id) / "record.json",
-                       recordJson(records_[index]));
-  }
-
-  core::ProcessJob start(std::size_t index) {
-    const fs::path folder = folderOf(index);
-    core::OutputFolder output(folder);
-    output.remove({"summary.json", "log.txt"});
-    output.removeUnfinished();
-    output.write("scenario.yaml", plan_[index].scenario_text);
-    ++records_[index].attempts;
-    return {options_.program,
-            {"run", (folder / "scenario.yaml").string(), "--quiet", "--results", folder.string(),
-             "--overwrite"},
-            output.claim("log.txt")};
-  }
-
-  /// Takes the end of an attempt; returns whether the run gets another.
-  bool finish(const core::ProcessEnd& end) {
-    RunRecord& record = records_[end.job];
-    record.exit_code = end.exit_code;
-    record.wall_seconds = end.seconds;
-    describeEnd(record, end);
-    const bool died = end.exit_code == ExitCode::kRunTimeError || end.exit_code > ExitCode::kSignal;
-    if (record.failed() && died && !end.timed_out && !stop_ && record.attempts <= options_.retries)
-      return true;
-    core::writeOwnFile(folderOf(end.job) / "record.json", recordJson(record));
-    if (options_.ended) options_.ended(record, false);
+/// Whether the result of an earlier batch stands; else, of a chosen run, the cause to run it again
+/// is counted.
+bool Executor::staysOrIsCounted(std::size_t index) {
+  const auto earlier = readRecord(folderOf(index) / "record.json");
+  if (!earlier) return false;
+  std::string cause = causeToRepeat(*earlier, plan_[index]);
+  if (cause.empty() && !fs::is_regular_file(folderOf(index) / "summary.json"))
+    cause = "summary.json missing";
+  if (!cause.empty()) {
+    if (isChosen(index)) repeated_[cause].push_back(plan_[index].id);
     return false;
   }
+  core::OutputFolder(folderOf(index)).removeUnfinished();  // of a batch that was killed there
+  records_.back() = *earlier;
+  resumed_.push_back(index);
+  return true;
+}
 
-  /// What the run's summary says; only a fault where it cannot be read, nothing where there is
-  /// none.
-  static SummaryFacts factsIn(const fs::path& folder) {
-    SummaryFacts facts;
-    const fs::path file = folder / "summary.json";
-    try {
-      if (fs::is_regular_file(file))
-        facts = readSummary(core::readFile(file, "summary"), file.string());
-    } catch (const core::InputError& error) {
-      facts.fault = error.what();
-    }
-    return facts;
+void Executor::informCaller() const {
+  for (const auto& [cause, ids] : repeated_) {
+    if (options_.repeated) options_.repeated(cause, ids);
   }
-
-  /// Status, cause and measures.
-  void describeEnd(RunRecord& record, const core::ProcessEnd& end) const {
-    const fs::path folder = folderOf(end.job);
-    record.cause.clear();
-    record.status = "error";
-    if (end.timed_out) {
-      record.cause = "timed out: killed after " + core::formatNumber(options_.timeout) + " s";
-      return;
-    }
-    const SummaryFacts facts = factsIn(folder);
-    if (record.exit_code == ExitCode::kInterrupted || end.interrupted)
-      record.status = "interrupted";
-    if (record.exit_code != ExitCode::kPassed && record.exit_code != ExitCode::kVerdictFailed) {
-      if (record.failed())
-        record.cause = causeOf(record.exit_code, facts.fault, folder / "log.txt");
-      return;
-    }
-    if (facts.status.empty()) {
-      record.status = "error";
-      record.cause = facts.fault.empty() ? "the run left no summary.json" : facts.fault;
-      return;
-    }
-    record.status = facts.status;
-    record.verdict = facts.verdict;
-    record.reasons = facts.reasons;
-    record.decided_by = facts.decided_by;
-    record.simulated_seconds = facts.simulated_seconds;
-    record.measures = facts.measures;
+  for (const std::size_t index : resumed_) {
+    if (options_.kept && isChosen(index)) options_.kept(records_[index]);
   }
+}
 
-  const std::vector<PlannedRun>& plan_;
-  const ExecutorOptions& options_;
-  const std::atomic<bool>& stop_;
-  std::vector<RunRecord> records_;
-  std::vector<std::size_t> resumed_;                          ///< runs that were complete already
-  std::map<std::string, std::vector<std::string>> repeated_;  ///< ids by cause
-  std::deque<std::size_t> queue_;
-  std::deque<std::size_t> later_;  ///< not chosen
-};
+/// Each run that is still to come gets a record that says so, whatever stops the batch later.
+void Executor::writeRecords() const {
+  std::deque<std::size_t> missing = now_;
+  for (const std::size_t index : later_) {
+    if (!fs::exists(folderOf(index) / "record.json")) missing.push_back(index);
+  }
+  std::vector<std::string> names;
+  for (const std::size_t index : missing) names.push_back(plan_[index].id);
+  core::OutputFolder(core::OutputFolder(options_.results).subfolder("runs")).makeSubfolders(names);
+  for (const std::size_t index : missing) writeRecord(index);
+}
 
-}  // namespace
+void Executor::writeRecord(std::size_t index) const {
+  core::OutputFolder folder(folderOf(index));
+  folder.write("scenario.yaml", plan_[index].scenario_text);
+  folder.write("record.json", recordJson(records_[index]));
+}
 
-fs::path runFolder(const fs::path& results, const std::string& id) { return results / "runs" / id; }
+std::vector<RunRecord> Executor::collect() {
+  for (const std::size_t index : now_) {
+    const auto ended = ended_.find(plan_[index].id);
+    if (ended != ended_.end()) {
+      records_[index] = ended->second;
+    } else if (const auto record = readRecord(folderOf(index) / "record.json")) {
+      records_[index] = *record;
+    }
+  }
+  return records_;
+}
+
+void Executor::close() const {
+  core::OutputFolder(options_.results).remove({PlanFile::kName});
+  core::LeaseFolder(leaseFolder(options_.results), options_.lease).removeLeftBehind();
+}
 
 std::vector<RunRecord> executeRuns(const std::vector<PlannedRun>& plan,
                                    const ExecutorOptions& options, const std::atomic<bool>& stop) {
-  return Executor(plan, options, stop).execute();
+  Executor executor(plan, options);
+  executor.announce();
+  WorkerOptions worker = options;
+  worker.waits = true;
+  worker.ended = [&](const RunRecord& record) {
+    executor.take(record);
+    if (options.ended) options.ended(record);
+  };
+  runPlanned(executor.queue(), worker, stop);
+  executor.close();
+  return executor.collect();
 }
 
 }  // namespace cdiff::evaluation

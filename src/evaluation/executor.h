@@ -3,43 +3,74 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <deque>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "evaluation/run_record.h"
+#include "evaluation/worker.h"
 
 namespace cdiff::evaluation {
 
-/// How `cdiff evaluate` runs planned sessions in parallel processes: time-out, retries, what an
-/// earlier batch leaves to do, and whom it informs.
-struct ExecutorOptions {
-  std::filesystem::path program =
-      "/proc/self/exe";  ///< understands `run FILE --quiet --results DIR --overwrite`
-  /// Arguments that make the program a server for sessions, which starts once and forks a child for
-  /// each (core/fork_server.h); empty: the program starts afresh for each.
-  std::vector<std::string> server = {};
-  std::filesystem::path results;  ///< result folder of the batch
-  int jobs = 1;                   ///< processes at a time
-  double timeout = 600.0;         ///< wall time of one attempt [s]
-  int retries = 1;                ///< further attempts where a process or its simulator died
-  double grace = 20.0;            ///< to end in after an interrupt [s]
+/// How `cdiff evaluate` runs a plan: how its workers do, what an earlier batch leaves to do, and
+/// whom it informs.
+struct ExecutorOptions : WorkerOptions {
   bool resume = false;  ///< complete records of the same scenario, inputs and program stay
   /// Runs that are run now; the others keep their record, or get one that says not_run. None: all.
   std::function<bool(const PlannedRun&)> chosen = {};
   /// Called before the first run for each cause to repeat runs that have a record, with their ids.
   std::function<void(const std::string& cause, const std::vector<std::string>& ids)> repeated = {};
-  /// Called after each record is written, and for each that stays.
-  std::function<void(const RunRecord&, bool resumed)> ended = {};
+  /// Called for each chosen run whose result stays.
+  std::function<void(const RunRecord&)> kept = {};
 };
 
-/// Folder of a run: RESULTS/runs/ID.
-std::filesystem::path runFolder(const std::filesystem::path& results, const std::string& id);
+/// What a batch does before workers run its plan, and after. Both arguments must outlive it.
+class Executor {
+ public:
+  Executor(const std::vector<PlannedRun>& plan, const ExecutorOptions& options)
+      : plan_(plan), options_(options) {}
 
-/// Record of every planned run, in their order, whatever happened to it. They are run in the
-/// order of runOrder(). Once `stop` is true no run
-/// is started and those under way are interrupted.
+  /// Gives each run that is to come a record that says not_run and its scenario, and writes
+  /// plan.json with these runs in the order of runOrder(). Throws InputError for what is in the
+  /// way.
+  void announce();
+  /// Ids of what announce() found to run.
+  const std::vector<std::string>& queue() const { return queue_; }
+  /// Of a run that has a result now.
+  void take(const RunRecord& record) { ended_[record.id] = record; }
+  /// Record of every planned run, in their order: those taken, else what their files say.
+  std::vector<RunRecord> collect();
+  /// Removes plan.json and the leases that were left behind: no worker is to come.
+  void close() const;
+
+ private:
+  void refuseRenamed() const;
+  void enqueue(std::size_t index);
+  void orderQueue(std::deque<std::size_t>& queue) const;
+  bool isChosen(std::size_t index) const;
+  bool staysOrIsCounted(std::size_t index);
+  void informCaller() const;
+  void writeRecords() const;
+  void writeRecord(std::size_t index) const;
+  std::filesystem::path folderOf(std::size_t index) const;
+
+  const std::vector<PlannedRun>& plan_;
+  const ExecutorOptions& options_;
+  std::vector<RunRecord> records_;
+  std::vector<std::size_t> resumed_;                          ///< runs that were complete already
+  std::map<std::string, std::vector<std::string>> repeated_;  ///< ids by cause
+  std::deque<std::size_t> now_;
+  std::deque<std::size_t> later_;  ///< not chosen
+  std::vector<std::string> queue_;
+  std::map<std::string, RunRecord> ended_;
+};
+
+/// Record of every planned run, in their order, whatever happened to it; see runPlanned. It also
+/// waits for runs that other workers have.
 std::vector<RunRecord> executeRuns(const std::vector<PlannedRun>& plan,
                                    const ExecutorOptions& options, const std::atomic<bool>& stop);
 

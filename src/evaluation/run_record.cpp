@@ -9,8 +9,8 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/executor.h"
 #include "evaluation/run_conditions.h"
+#include "evaluation/worker.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 

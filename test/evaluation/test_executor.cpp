@@ -56,7 +56,8 @@ class ExecutorTest : public testing::Test {
     options_.results = scratch_.path();
     options_.timeout = 30.0;
     options_.jobs = 2;
-    options_.ended = [this](const RunRecord& record, bool resumed) { ends_[record.id] = resumed; };
+    options_.ended = [this](const RunRecord& record) { ends_[record.id] = false; };
+    options_.kept = [this](const RunRecord& record) { ends_[record.id] = true; };
     std::ofstream(options_.program) << kFakeProgram;
     fs::permissions(options_.program, fs::perms::owner_all);
   }
@@ -108,7 +109,7 @@ TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
 TEST_F(ExecutorTest, RunsInTheOrderOfASample) {
   options_.jobs = 1;
   std::vector<std::string> ended;
-  options_.ended = [&](const RunRecord& record, bool) { ended.push_back(record.id); };
+  options_.ended = [&](const RunRecord& record) { ended.push_back(record.id); };
   execute(plan(std::vector<std::string>(6, "good")));
   EXPECT_EQ(ended,
             (std::vector<std::string>{"good3", "good1", "good0", "good5", "good4", "good2"}));

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/worker.h"
+
+#include <chrono>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "core/file.h"
+#include "core/folder_lock.h"
+#include "core/output_folder.h"
+#include "core/process_pool.h"
+#include "core/program.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "session/scenario_options.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using core::ExitCode;
+
+/// Between two looks at the runs that other workers have.
+constexpr std::chrono::milliseconds kLookPeriod{200};
+
+/// The last line that a run wrote; empty when there is none.
+std::string lastLine(const fs::path& log) {
+  if (!fs::is_regular_file(log)) return "";
+  const auto lines = core::splitText(core::readFile(log, "log"), '\n');
+  return lines.empty() ? "" : lines.back();
+}
+
+std::string causeOf(int exit_code, const std::string& fault, const fs::path& log) {
+  if (!fault.empty()) return fault;
+  const std::string line = lastLine(log);
+  if (exit_code > ExitCode::kSignal) {
+    return "the process ended by signal " + std::to_string(exit_code - ExitCode::kSignal);
+  }
+  return "exit code " + std::to_string(exit_code) + (line.empty() ? "" : ": " + line);
+}
+
+/// What the run's summary says; only a fault where it cannot be read, nothing where there is none.
+SummaryFacts factsIn(const fs::path& folder) {
+  SummaryFacts facts;
+  const fs::path file = folder / "summary.json";
+  try {
+    if (fs::is_regular_file(file))
+      facts = readSummary(core::readFile(file, "summary"), file.string());
+  } catch (const core::InputError& error) {
+    facts.fault = error.what();
+  }
+  return facts;
+}
+
+/// Status, cause and measures of a run that has ended.
+void describeEnd(RunRecord& record, const core::ProcessEnd& end, const fs::path& folder,
+                 double timeout) {
+  record.cause.clear();
+  record.status = "error";
+  if (end.timed_out) {
+    record.cause = "timed out: killed after " + core::formatNumber(timeout) + " s";
+    return;
+  }
+  const SummaryFacts facts = factsIn(folder);
+  if (record.exit_code == ExitCode::kInterrupted || end.interrupted) record.status = "interrupted";
+  if (record.exit_code != ExitCode::kPassed && record.exit_code != ExitCode::kVerdictFailed) {
+    if (record.failed()) record.cause = causeOf(record.exit_code, facts.fault, folder / "log.txt");
+    return;
+  }
+  if (facts.status.empty()) {
+    record.status = "error";
+    record.cause = facts.fault.empty() ? "the run left no summary.json" : facts.fault;
+    return;
+  }
+  record.status = facts.status;
+  record.verdict = facts.verdict;
+  record.reasons = facts.reasons;
+  record.decided_by = facts.decided_by;
+  record.simulated_seconds = facts.simulated_seconds;
+  record.measures = facts.measures;
+}
+
+/// Runs are addressed by their place in the list of ids.
+class Worker {
+ public:
+  Worker(const std::vector<std::string>& ids, const WorkerOptions& options,
+         const std::atomic<bool>& stop)
+      : ids_(ids),
+        options_(options),
+        stop_(stop),
+        leases_(leaseFolder(options.results), options.lease) {}
+
+  void run() {
+    std::deque<std::size_t> queue;
+    for (std::size_t i = 0; i < ids_.size(); ++i) queue.push_back(i);
+    std::optional<core::PoolServer> server;
+    if (!options_.server.empty()) server = {options_.program, options_.server};
+    for (;;) {
+      core::runProcesses(queue, {options_.jobs, options_.timeout, options_.grace}, stop_,
+                         {[this](std::size_t index) { return start(index); },
+                          [this](const core::ProcessEnd& end) { return finish(end); }},
+                         server);
+      queue = std::move(taken_);
+      taken_.clear();
+      if (queue.empty() || stop_ || !options_.waits) return;
+      std::this_thread::sleep_for(kLookPeriod);
+    }
+  }
+
+ private:
+  struct Held {
+    std::shared_ptr<const core::Lease> lease;
+    RunRecord record;
+  };
+
+  fs::path folderOf(std::size_t index) const { return runFolder(options_.results, ids_[index]); }
+
+  RunRecord recordAt(std::size_t index) const {
+    const fs::path file = folderOf(index) / "record.json";
+    if (auto record = readRecord(file)) return *record;
+    throw core::InputError("'" + file.string() +
+                           "' is missing, but the run is planned; plan it "
+                           "again with cdiff evaluate --resume");
+  }
+  /// Whether it needs nothing any more; then it is announced.
+  bool isDone(const RunRecord& record) const {
+    if (record.status == "not_run" || record.status == "interrupted") return false;
+    if (options_.ended) options_.ended(record);
+    return true;
+  }
+
+  std::optional<core::ProcessJob> start(std::size_t index) {
+    if (held_.count(index) == 0 && !claim(index)) return std::nullopt;
+    const fs::path folder = folderOf(index);
+    core::OutputFolder output(folder);
+    output.remove({"summary.json", "log.txt"});
+    output.removeUnfinished();
+    ++held_.at(index).record.attempts;
+    return core::ProcessJob{options_.program,
+                            {"run", (folder / "scenario.yaml").string(), "--quiet", "--results",
+                             folder.string(), "--overwrite"},
+                            output.claim("log.txt")};
+  }
+
+  /// Whether the run is ours to do now. What another worker has waits in `taken_`.
+  bool claim(std::size_t index) {
+    if (isDone(recordAt(index))) return false;
+    std::shared_ptr<const core::Lease> lease = leases_.claim(ids_[index]);
+    if (!lease) {
+      taken_.push_back(index);
+      return false;
+    }
+    const RunRecord record = recordAt(index);  // as it is now that nobody else writes it
+    if (isDone(record)) return false;
+    if (lease->tookOver()) core::FolderLock::removeLeftBehind(folderOf(index));
+    if (options_.compares_inputs) requireInputs(index, record);
+    held_[index] = {std::move(lease), recordOf({record.id, record.factors, "",
+                                                record.scenario_sha256, record.inputs})};
+    return true;
+  }
+
+  void requireInputs(std::size_t index, const RunRecord& record) {
+    const fs::path file = folderOf(index) / "scenario.yaml";
+    const std::string text = core::readFile(file, "scenario");
+    if (core::sha256(text) != record.scenario_sha256)
+      throw core::InputError("'" + file.string() +
+                             "' is not what was planned; plan it again with "
+                             "cdiff evaluate --resume");
+    const auto now = hasher_.hashes(session::loadScenario(file.string()));
+    const std::string changed = changedInputs(record.inputs, now);
+    if (changed.empty()) return;
+    throw core::InputError("run '" + ids_[index] + "' was planned with other files: " + changed +
+                           " changed; expected the same on every host");
+  }
+
+  /// Takes the end of an attempt; returns whether the run gets another.
+  bool finish(const core::ProcessEnd& end) {
+    Held& held = held_.at(end.job);
+    RunRecord& record = held.record;
+    record.exit_code = end.exit_code;
+    record.wall_seconds = end.seconds;
+    describeEnd(record, end, folderOf(end.job), options_.timeout);
+    const bool died = end.exit_code == ExitCode::kRunTimeError || end.exit_code > ExitCode::kSignal;
+    if (record.failed() && died && !end.timed_out && !stop_ && record.attempts <= options_.retries)
+      return true;
+    if (held.lease->isHeld()) {
+      core::writeOwnFile(folderOf(end.job) / "record.json", recordJson(record));
+      if (options_.ended) options_.ended(record);
+    } else {
+      taken_.push_back(end.job);
+    }
+    held_.erase(end.job);
+    return false;
+  }
+
+  const std::vector<std::string>& ids_;
+  const WorkerOptions& options_;
+  const std::atomic<bool>& stop_;
+  core::LeaseFolder leases_;
+  InputHasher hasher_;
+  std::map<std::size_t, Held> held_;
+  std::deque<std::size_t> taken_;  ///< runs that others have
+};
+
+}  // namespace
+
+fs::path leaseFolder(const fs::path& results) { return results / ".leases"; }
+
+fs::path runFolder(const fs::path& results, const std::string& id) { return results / "runs" / id; }
+
+void runPlanned(const std::vector<std::string>& ids, const WorkerOptions& options,
+                const std::atomic<bool>& stop) {
+  Worker(ids, options, stop).run();
+}
+
+}  // namespace cdiff::evaluation
