@@ -11,6 +11,7 @@
 #include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
+#include "evaluation/fake_runs.h"
 #include "planners/diffusion/diffusion_options.h"
 #include "support/temporary_folder.h"
 
@@ -18,28 +19,6 @@ namespace cdiff::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Plays `cdiff run FILE --quiet --results FOLDER`: the scenario's text says how it ends.
-constexpr const char* kFakeProgram = R"sh(#!/bin/sh
-folder=$5
-echo attempt >> $folder/attempts
-succeed() {
-  cat > $folder/summary.json <<EOF
-{"status": "completed", "simulated_seconds": 4.0, "ego": {"driving_score": 80},
- "faults": [], "verdict": {"outcome": "passed", "reasons": []}}
-EOF
-  exit 0
-}
-case "$(cat $2)" in
-  good) succeed ;;
-  hang) sleep 100 & echo $! > $folder/child; wait ;;
-  dies) kill -9 $$ ;;
-  dies_once) [ $(wc -l < $folder/attempts) -gt 1 ] && succeed; exit 137 ;;
-  refuses) echo "cdiff: key 'x' is wrong" >&2; exit 3 ;;
-  half) echo '{"status": "comp' > $folder/summary.json; exit 0 ;;
-  polite) trap 'exit 130' INT; touch $folder/ready; while :; do sleep 0.05; done ;;
-esac
-)sh";
 
 /// A process that is dead but no one's to reap here counts as dead.
 bool isAlive(pid_t process) {
@@ -58,20 +37,7 @@ class ExecutorTest : public testing::Test {
     options_.jobs = 2;
     options_.ended = [this](const RunRecord& record) { ends_[record.id] = false; };
     options_.kept = [this](const RunRecord& record) { ends_[record.id] = true; };
-    std::ofstream(options_.program) << kFakeProgram;
-    fs::permissions(options_.program, fs::perms::owner_all);
-  }
-  static std::vector<PlannedRun> plan(const std::vector<std::string>& ways) {
-    std::vector<PlannedRun> runs;
-    for (const std::string& way : ways) {
-      PlannedRun run;
-      run.id = way + std::to_string(runs.size());
-      for (const std::string& factor : factorNames()) run.factors[factor] = "x";
-      run.scenario_text = way;
-      run.scenario_sha256 = core::sha256(way);
-      runs.push_back(run);
-    }
-    return runs;
+    test::writeFakeProgram(options_.program);
   }
   std::vector<RunRecord> execute(const std::vector<PlannedRun>& runs) {
     return executeRuns(runs, options_, stop_);
@@ -89,7 +55,7 @@ class ExecutorTest : public testing::Test {
 };
 
 TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
-  const auto records = execute(plan({"good", "refuses", "half", "good"}));
+  const auto records = execute(test::fakePlan({"good", "refuses", "half", "good"}));
   ASSERT_EQ(records.size(), 4U);
   EXPECT_EQ(records[0].status, "completed");
   EXPECT_TRUE(records[0].has(record::Outcome::kPassed));
@@ -110,13 +76,13 @@ TEST_F(ExecutorTest, RunsInTheOrderOfASample) {
   options_.jobs = 1;
   std::vector<std::string> ended;
   options_.ended = [&](const RunRecord& record) { ended.push_back(record.id); };
-  execute(plan(std::vector<std::string>(6, "good")));
+  execute(test::fakePlan(std::vector<std::string>(6, "good")));
   EXPECT_EQ(ended,
             (std::vector<std::string>{"good3", "good1", "good0", "good5", "good4", "good2"}));
 }
 
 TEST_F(ExecutorTest, RunsOnlyWhatIsChosenAndLeavesTheRestForLater) {
-  const std::vector<PlannedRun> runs = plan({"good", "good", "good"});
+  const std::vector<PlannedRun> runs = test::fakePlan({"good", "good", "good"});
   options_.chosen = [](const PlannedRun& run) { return run.id == "good1"; };
   auto records = execute(runs);
   EXPECT_EQ(records[0].status, "not_run");
@@ -137,7 +103,7 @@ TEST_F(ExecutorTest, RunsOnlyWhatIsChosenAndLeavesTheRestForLater) {
 // A batch that was killed between giving a record its name and taking its part off the folder's
 // list.
 TEST_F(ExecutorTest, TakesAwayWhatAKilledBatchLeftBesideAResult) {
-  const std::vector<PlannedRun> runs = plan({"good"});
+  const std::vector<PlannedRun> runs = test::fakePlan({"good"});
   execute(runs);
   core::OutputFolder(runFolder(options_.results, "good0")).claim("record.json.part");
   options_.resume = true;
@@ -147,7 +113,7 @@ TEST_F(ExecutorTest, TakesAwayWhatAKilledBatchLeftBesideAResult) {
 }
 
 TEST_F(ExecutorTest, RefusesToResumeARunThatHadAnotherName) {
-  std::vector<PlannedRun> runs = plan({"good"});
+  std::vector<PlannedRun> runs = test::fakePlan({"good"});
   execute(runs);
   runs[0].id = "renamed";
   options_.resume = true;
@@ -158,7 +124,7 @@ TEST_F(ExecutorTest, RefusesToResumeARunThatHadAnotherName) {
 }
 
 TEST_F(ExecutorTest, AStaleRecordThatIsNotChosenStays) {
-  std::vector<PlannedRun> runs = plan({"good"});
+  std::vector<PlannedRun> runs = test::fakePlan({"good"});
   execute(runs);
   runs[0].inputs = {{"program", "later"}};
   options_.resume = true;
@@ -170,7 +136,7 @@ TEST_F(ExecutorTest, AStaleRecordThatIsNotChosenStays) {
 
 TEST_F(ExecutorTest, TriesAgainWhenAProcessDied) {
   options_.retries = 2;
-  const auto records = execute(plan({"dies", "dies_once"}));
+  const auto records = execute(test::fakePlan({"dies", "dies_once"}));
   EXPECT_EQ(records[0].status, "error");
   EXPECT_EQ(records[0].cause, "the process ended by signal 9");
   EXPECT_EQ(records[0].attempts, 3);
@@ -181,7 +147,7 @@ TEST_F(ExecutorTest, TriesAgainWhenAProcessDied) {
 }
 
 TEST_F(ExecutorTest, RunsAgainWhatHasOtherInputsAndSaysWhy) {
-  std::vector<PlannedRun> runs = plan({"good", "good", "good", "good", "refuses"});
+  std::vector<PlannedRun> runs = test::fakePlan({"good", "good", "good", "good", "refuses"});
   for (PlannedRun& run : runs) run.inputs = {{"network", "n"}, {"weights", "w"}, {"program", "p"}};
   execute(runs);
   runs[0].inputs["weights"] = "other";
@@ -206,7 +172,7 @@ TEST_F(ExecutorTest, RunsAgainWhatHasOtherInputsAndSaysWhy) {
 }
 
 TEST_F(ExecutorTest, ARecordWithoutHashesIsRunAgain) {
-  std::vector<PlannedRun> runs = plan({"good"});
+  std::vector<PlannedRun> runs = test::fakePlan({"good"});
   execute(runs);
   runs[0].inputs = {{"program", "p"}};
   options_.resume = true;
@@ -241,7 +207,7 @@ TEST(RunInputs, HashTheContentOfTheFilesThatAScenarioNames) {
 
 TEST_F(ExecutorTest, KillsALateRunWithAllThatItStarted) {
   options_.timeout = 0.5;
-  const auto records = execute(plan({"hang", "good"}));
+  const auto records = execute(test::fakePlan({"hang", "good"}));
   EXPECT_EQ(records[0].status, "error");
   EXPECT_EQ(records[0].cause, "timed out: killed after 0.5 s");
   EXPECT_EQ(records[0].attempts, 1);
@@ -253,7 +219,7 @@ TEST_F(ExecutorTest, KillsALateRunWithAllThatItStarted) {
 }
 
 TEST_F(ExecutorTest, ResumesWhatIsNotComplete) {
-  auto runs = plan({"good", "good", "good", "refuses"});
+  auto runs = test::fakePlan({"good", "good", "good", "refuses"});
   execute(runs);
   fs::remove(file("good1", "record.json"));  // cut off before its record
   runs[2].scenario_sha256 = core::sha256("changed");
@@ -271,7 +237,7 @@ TEST_F(ExecutorTest, ResumesWhatIsNotComplete) {
 }
 
 TEST_F(ExecutorTest, RefusesADamagedRecordBeforeAnythingRuns) {
-  const auto runs = plan({"good", "good"});
+  const auto runs = test::fakePlan({"good", "good"});
   execute(runs);
   fs::remove(file("good0", "record.json"));
   std::ofstream(file("good1", "record.json")) << R"({"id": "good1", "fact)";
@@ -289,7 +255,7 @@ TEST_F(ExecutorTest, RefusesADamagedRecordBeforeAnythingRuns) {
 }
 
 TEST_F(ExecutorTest, ClearsAwayWhatACutOffRunLeft) {
-  const auto runs = plan({"good"});
+  const auto runs = test::fakePlan({"good"});
   execute(runs);
   const fs::path half = file("good0", "trace.csv.part");
   const fs::path mine = file("good0", "notes.part");
@@ -308,7 +274,7 @@ TEST_F(ExecutorTest, StopsWithARecordOfWhatIsDone) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     stop_ = true;
   });
-  const auto records = execute(plan({"good", "polite", "good"}));
+  const auto records = execute(test::fakePlan({"good", "polite", "good"}));
   stopper.join();
   EXPECT_EQ(records[0].status, "completed");
   EXPECT_EQ(records[1].status, "interrupted");
@@ -326,7 +292,7 @@ TEST_F(ExecutorTest, KillsWhatDoesNotEndInTheGraceAfterAStop) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     stop_ = true;
   });
-  const auto records = execute(plan({"hang"}));
+  const auto records = execute(test::fakePlan({"hang"}));
   stopper.join();
   EXPECT_EQ(records[0].status, "interrupted");
 }

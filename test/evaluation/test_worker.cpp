@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Workers that share a plan: each run has one result, whatever happens to a worker.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include "core/output_folder.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/executor.h"
+#include "evaluation/fake_runs.h"
+#include "evaluation/plan_file.h"
+#include "evaluation/worker.h"
+#include "support/temporary_folder.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WorkerTest : public testing::Test {
+ protected:
+  WorkerTest() {
+    options_.program = scratch_.path() / "program.sh";
+    options_.results = scratch_.path();
+    options_.timeout = 60.0;
+    test::writeFakeProgram(options_.program);
+  }
+  /// As `cdiff evaluate` plans it.
+  void announce(const std::vector<std::string>& ways) {
+    plan_ = test::fakePlan(ways);
+    ExecutorOptions options;
+    static_cast<WorkerOptions&>(options) = options_;
+    Executor executor(plan_, options);
+    executor.announce();
+    ids_ = executor.queue();
+  }
+  void work() { runPlanned(ids_, options_, stop_); }
+  fs::path file(const std::string& id, const std::string& name) const {
+    return runFolder(options_.results, id) / name;
+  }
+  RunRecord record(const std::string& id) const { return *readRecord(file(id, "record.json")); }
+  std::size_t starts(const std::string& id) const {
+    return core::readFile(file(id, "attempts"), "attempts").size() / 8;  // "attempt\n"
+  }
+  /// A process that works on the plan until a session of the run `id` hangs, and is killed then.
+  void workAndBeKilledIn(const std::string& id) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      work();
+      ::_exit(0);
+    }
+    while (!fs::exists(file(id, "child")))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+  }
+  /// Lets the run end the next time it is started.
+  void mend(const std::string& id) const { core::writeOwnFile(file(id, "scenario.yaml"), "good"); }
+  test::TemporaryFolder scratch_;
+  WorkerOptions options_;
+  std::vector<PlannedRun> plan_;
+  std::vector<std::string> ids_;
+  std::atomic<bool> stop_{false};
+};
+
+TEST_F(WorkerTest, ManyOnOnePlanRunEachRunOnce) {
+  announce(std::vector<std::string>(20, "good"));
+  std::vector<std::thread> workers;
+  for (int i = 0; i < 3; ++i) workers.emplace_back([this] { work(); });
+  for (std::thread& worker : workers) worker.join();
+  for (const std::string& id : ids_) {
+    EXPECT_EQ(starts(id), 1U) << id;
+    EXPECT_EQ(record(id).status, "completed") << id;
+  }
+  EXPECT_TRUE(fs::is_empty(leaseFolder(options_.results)));
+}
+
+TEST_F(WorkerTest, KilledBetweenClaimAndRecordLeavesTheRunToTheNext) {
+  announce({"hang", "good"});
+  workAndBeKilledIn("hang0");
+  EXPECT_EQ(record("hang0").status, "not_run");
+  mend("hang0");
+  work();
+  EXPECT_EQ(record("hang0").status, "completed");
+  EXPECT_EQ(record("hang0").attempts, 1) << "as of a run that was never cut off";
+  EXPECT_EQ(starts("good1"), 1U);
+}
+
+TEST_F(WorkerTest, WaitsForWhatAnotherHostHasAndTakesItOverOnceItIsSilent) {
+  announce({"good"});
+  fs::create_directories(leaseFolder(options_.results));
+  std::ofstream(leaseFolder(options_.results) / "good0.1")
+      << "host: other\nprocess: 1\nprogram: cdiff worker\nsince: 2099-01-01 00:00:00\nboot: other\n"
+      << "beat: 000000000001\n";
+  std::ofstream(file("good0", ".lock"))
+      << "host: other\nprocess: 1\nprogram: cdiff run\nsince: 2099-01-01 00:00:00\n";
+  work();
+  EXPECT_EQ(record("good0").status, "not_run") << "a worker that does not wait leaves it alone";
+  options_.waits = true;
+  options_.lease.expiry = 0.1;
+  work();
+  EXPECT_EQ(record("good0").status, "completed");
+  EXPECT_FALSE(fs::exists(file("good0", ".lock")));
+}
+
+TEST_F(WorkerTest, ReturnsAnInterruptedRun) {
+  announce({"polite"});
+  std::thread stopper([this] {
+    while (!fs::exists(file("polite0", "ready")))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    stop_ = true;
+  });
+  work();
+  stopper.join();
+  EXPECT_EQ(record("polite0").status, "interrupted");
+  EXPECT_TRUE(fs::is_empty(leaseFolder(options_.results)));
+  stop_ = false;
+  mend("polite0");
+  work();
+  EXPECT_EQ(record("polite0").status, "completed");
+}
+
+TEST_F(WorkerTest, WritesNoRecordOfARunThatWasTakenFromIt) {
+  announce({"good"});
+  const fs::path thief = scratch_.path() / "thief.sh";
+  std::ofstream(thief) << "#!/bin/sh\nrm " << leaseFolder(options_.results).string() << "/*\n"
+                       << options_.program.string() << " \"$@\"\n";
+  fs::permissions(thief, fs::perms::owner_all);
+  options_.program = thief;
+  work();
+  EXPECT_EQ(starts("good0"), 1U);
+  EXPECT_EQ(record("good0").status, "not_run");
+}
+
+TEST_F(WorkerTest, RefusesAPlanOfAnotherBuildOrMachine) {
+  announce({"good"});
+  PlanFile plan = readPlan(options_.results);
+  EXPECT_NO_THROW(requireSameProgram(plan));
+  EXPECT_EQ(plan.ids, ids_);
+  plan.instruction_sets = "another";
+  EXPECT_THROW(requireSameProgram(plan), core::InputError);
+  plan = readPlan(options_.results);
+  plan.program = std::string(64, '0');
+  EXPECT_THROW(requireSameProgram(plan), core::InputError);
+}
+
+TEST_F(WorkerTest, RefusesAFolderWithoutPlanAndADamagedPlan) {
+  EXPECT_THROW(readPlan(scratch_.path() / "nothing"), core::InputError);
+  std::ofstream(scratch_.path() / PlanFile::kName) << R"({"schema_version": 1})";
+  EXPECT_THROW(readPlan(scratch_.path()), core::InputError);
+}
+
+TEST_F(WorkerTest, RefusesAScenarioThatIsNotWhatWasPlanned) {
+  announce({"good"});
+  mend("good0");
+  core::writeOwnFile(file("good0", "scenario.yaml"), "refuses");
+  options_.compares_inputs = true;
+  EXPECT_THROW(work(), core::InputError);
+  EXPECT_EQ(record("good0").status, "not_run");
+  EXPECT_TRUE(fs::is_empty(leaseFolder(options_.results))) << "the run is free for others";
+}
+
+TEST_F(WorkerTest, SaysThatTheSharedFolderIsGone) {
+  announce({"good"});
+  fs::remove_all(scratch_.path() / "runs");
+  EXPECT_THROW(work(), core::InputError);
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation
