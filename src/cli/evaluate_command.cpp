@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "cli/batch_engine.h"
 #include "cli/bench2drive_table.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
@@ -24,6 +25,7 @@
 #include "evaluation/plan_file.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/separation/ego_ranking.h"
+#include "evaluation/slurm/slurm_queue.h"
 #include "evaluation/suite_selection.h"
 #include "planners/registry.h"
 
@@ -52,23 +54,21 @@ struct EvaluateArguments {
   bool overwrite = false;
   bool strict = false;
   bool fresh = false;
+  std::string engine = "local";
+  std::vector<std::string> slurm;
+  bool attach = false;
+  bool cancel = false;
 };
 
 constexpr const char* kMatrixFile = "matrix.yaml";
 /// What a batch writes beside its runs, and what --overwrite replaces.
-const std::vector<std::string> kBatchFiles = {"runs.csv",
-                                              "summary.json",
-                                              "summary.md",
-                                              "junit.xml",
-                                              "index.html",
-                                              "table.md",
-                                              "compare.csv",
-                                              "left_out.txt",
-                                              "ego_ranking.csv",
-                                              "ego_ranking.html",
-                                              evaluation::PlanFile::kName,
-                                              kMatrixFile};
+const std::vector<std::string> kBatchFiles = {
+    "runs.csv",     "summary.json",    "summary.md",       "junit.xml",
+    "index.html",   "table.md",        "compare.csv",      "engine.json",
+    "left_out.txt", "ego_ranking.csv", "ego_ranking.html", evaluation::PlanFile::kName,
+    kMatrixFile};
 const std::vector<std::string> kBatchFolders = {"runs", "tables", "figures"};
+constexpr const char* kJobFolder = "slurm";
 
 /// The Bench2Drive routes of the arguments.
 evaluation::Bench2DriveOptions routesOf(const EvaluateArguments& arguments) {
@@ -90,6 +90,7 @@ std::string suiteOf(const std::string& name) {
 MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
   const bool suite = !arguments.suite.empty();
   const bool bench2drive = !arguments.bench2drive.empty();
+  if (arguments.attach) return evaluation::loadMatrix(fs::path(arguments.results) / kMatrixFile);
   if (arguments.matrix.empty() && !suite && !bench2drive) {
     throw InputError(
         "give a matrix (file or shipped name), or routes: --suite NAME, or --bench2drive FILE "
@@ -138,7 +139,8 @@ void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
     throw InputError("'" + folder.string() +
                      "' holds the result of a session (session.yaml); give another --results");
   }
-  if (!arguments.resume && !arguments.overwrite && fs::exists(folder / kMatrixFile, error)) {
+  const bool goes_on = arguments.resume || arguments.overwrite || arguments.attach;
+  if (!goes_on && fs::exists(folder / kMatrixFile, error)) {
     throw InputError("'" + folder.string() + "' holds the results of a batch (" + kMatrixFile +
                      "); go on with it (--resume), replace it (--overwrite), or give another "
                      "--results");
@@ -146,6 +148,27 @@ void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
   std::vector<std::string> names = kBatchFiles;
   if (!arguments.open_sealed.empty()) names.emplace_back("opened.log");
   core::OutputFolder::requireFree(folder, names);
+}
+
+/// Slurm wrote the logs in it, so they are on no record of ours.
+void removeJobFolder(core::OutputFolder& output) {
+  for (const auto& entry : fs::directory_iterator(output.path() / kJobFolder)) {
+    if (entry.path().extension() == ".log" && entry.is_regular_file()) fs::remove(entry.path());
+  }
+  core::OutputFolder(output.path() / kJobFolder).clear();
+  output.remove({kJobFolder});
+}
+
+/// Throws InputError where a worker is at work on a plan that is to be replaced.
+void requireNoWorker(const fs::path& results) {
+  core::LeaseFolder leases(evaluation::leaseFolder(results), {});
+  leases.removeLeftBehind();
+  for (const auto& [id, holder] : leases.holders()) {
+    throw InputError("run '" + id + "' in '" + results.string() + "' is under way by " + holder +
+                     "; wait until it has ended, end it (--cancel), or, if that process is gone, "
+                     "delete '" +
+                     evaluation::leaseFolder(results).string() + "'");
+  }
 }
 
 /// Makes what a batch needs in a folder that is ours, and keeps the matrix in it; on resumption
@@ -161,6 +184,7 @@ void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool
       if (fs::is_directory(output.path() / name)) core::OutputFolder(output.path() / name).clear();
     }
     output.remove({kBatchFolders.begin(), kBatchFolders.end()});
+    if (fs::is_directory(output.path() / kJobFolder)) removeJobFolder(output);
   }
   const fs::path file = output.path() / kMatrixFile;
   if (fs::exists(file)) {
@@ -199,6 +223,27 @@ int exitCodeOf(const std::vector<RunRecord>& records,
   return exit_code;
 }
 
+/// On another engine: submits what is to run, or prints it, or follows what runs already.
+std::vector<RunRecord> executeElsewhere(const std::vector<evaluation::PlannedRun>& plan,
+                                        const evaluation::ExecutorOptions& options,
+                                        const EvaluateArguments& arguments,
+                                        BatchProgress& progress) {
+  const auto slurm = evaluation::slurmOptionsOf(arguments.slurm);
+  evaluation::Executor executor(plan, options);
+  if (arguments.attach) {
+    executor.join();
+  } else {
+    executor.announce();
+    if (arguments.engine == "print") {
+      printJobs(executor, options.results, arguments.jobs, slurm);
+      return executor.collect();
+    }
+    submitJobs(executor, options.results, arguments.jobs, slurm);
+  }
+  if (followJobs(executor.queue(), options.results, slurm, progress)) executor.close();
+  return executor.collect();
+}
+
 std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
                                const MatrixOptions& matrix, const fs::path& results,
                                const EvaluateArguments& arguments,
@@ -218,7 +263,9 @@ std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
   options.repeated = [&](const auto& cause, const auto& ids) { progress.repeated(cause, ids); };
   options.ended = [&](const RunRecord& record) { progress.ended(record, false); };
   options.kept = [&](const RunRecord& record) { progress.ended(record, true); };
-  auto records = evaluation::executeRuns(plan, options, core::catchStopSignals());
+  const bool here = arguments.engine == "local" && !arguments.attach;
+  auto records = here ? evaluation::executeRuns(plan, options, core::catchStopSignals())
+                      : executeElsewhere(plan, options, arguments, progress);
   progress.finish();
   return records;
 }
@@ -243,7 +290,18 @@ void noteLeftOut(core::OutputFolder& output, const std::vector<std::string>& lef
   output.write(evaluation::kSkippedFile, core::joinText(left_out, "\n") + "\n");
 }
 
+/// The runs under way are returned; --resume goes on with them.
+int cancel(const EvaluateArguments& arguments) {
+  evaluation::requireSlurm();
+  const std::string name = evaluation::readJobName(fs::absolute(arguments.results));
+  evaluation::cancelJobs(name);
+  std::cerr << "canceled " << name << "\n";
+  return ExitCode::kPassed;
+}
+
 int evaluate(const EvaluateArguments& arguments) {
+  if (arguments.cancel) return cancel(arguments);
+  requireEngine(arguments.engine, evaluation::slurmOptionsOf(arguments.slurm));
   const MatrixOptions matrix = matrixOf(arguments);
   const fs::path results = fs::absolute(arguments.results);
   requireFolder(results, arguments);
@@ -256,10 +314,12 @@ int evaluate(const EvaluateArguments& arguments) {
   const evaluation::ChosenLevels chosen = evaluation::chosenLevels(arguments.only, plan);
   core::OutputFolder output(results, "cdiff evaluate");
   requireFolder(results, arguments);
+  if (!arguments.attach) requireNoWorker(results);
   prepareFolder(output, matrix, arguments.overwrite);
   std::cerr << evaluation::recordOpening(matrix, results) << repeated;
   noteLeftOut(output, left_out);
   const auto records = execute(plan, matrix, results, arguments, chosen);
+  if (arguments.engine == "print" && !arguments.attach) return ExitCode::kPassed;
   output.requireInPlace();
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
@@ -272,6 +332,30 @@ int evaluate(const EvaluateArguments& arguments) {
   std::cout << text << std::flush;
   std::cerr << "report: " << (results / "index.html").string() << "\n";
   return exitCodeOf(records, plan, chosen);
+}
+
+}  // namespace
+
+namespace {
+
+void addEngineOptions(CLI::App& command, EvaluateArguments& arguments) {
+  command
+      .add_option(
+          "--engine", arguments.engine,
+          "Where the sessions run: local; slurm: in job arrays of a cluster; print: nowhere, "
+          "the plan and the script of the jobs are written and printed")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"local", "slurm", "print"}));
+  command
+      .add_option("--slurm", arguments.slurm,
+                  "What to ask of Slurm: key=value or a YAML file; may be repeated")
+      ->allow_extra_args(false);
+  CLI::Option* attach = command.add_flag("--attach", arguments.attach,
+                                         "Follow the jobs of a batch on Slurm again and sum it up");
+  command
+      .add_flag("--cancel", arguments.cancel,
+                "End the jobs of a batch on Slurm; --resume goes on with it")
+      ->excludes(attach);
 }
 
 }  // namespace
@@ -320,6 +404,7 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
                     "Start the program for each session, instead of once for each job");
   command->footer("Planners that can attack (mode safety_critical): " +
                   core::joinText(planners::guidedPlannerNames(), ", "));
+  addEngineOptions(*command, *arguments);
   CLI::Option* resume = command->add_flag(
       "--resume", arguments->resume,
       "Run only what is not complete yet, or was run with other files or another program");

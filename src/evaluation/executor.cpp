@@ -28,6 +28,14 @@ void Executor::announce() {
                                options_.retries, options_.server.empty(), queue_});
 }
 
+void Executor::join() {
+  queue_ = readPlan(options_.results).ids;
+  for (std::size_t i = 0; i < plan_.size(); ++i) {
+    records_.push_back(recordOf(plan_[i]));
+    now_.push_back(i);
+  }
+}
+
 /// A run that an earlier version called otherwise would count twice.
 void Executor::refuseRenamed() const {
   std::map<Factors, std::string> ids;

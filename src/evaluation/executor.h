@@ -38,7 +38,10 @@ class Executor {
   /// plan.json with these runs in the order of runOrder(). Throws InputError for what is in the
   /// way.
   void announce();
-  /// Ids of what announce() found to run.
+  /// Goes on with a plan that was announced by another process. Throws InputError where there is
+  /// none.
+  void join();
+  /// Ids of what announce() or join() found to run.
   const std::vector<std::string>& queue() const { return queue_; }
   /// Of a run that has a result now.
   void take(const RunRecord& record) { ended_[record.id] = record; }

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/slurm/slurm_queue.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "core/guarded_process.h"
+#include "core/output_folder.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kEngineFile = "engine.json";
+constexpr const char* kPackage = "slurm-client";
+constexpr double kPatience = 60.0;  // for one command [s]
+constexpr std::size_t kMostOutput = std::size_t{1} << 20;
+
+/// How a command of Slurm ended, and what it printed.
+struct Answer {
+  bool succeeded = false;
+  std::string text;  ///< without the last line break
+};
+
+Answer ask(const std::string& command, const std::vector<std::string>& arguments) {
+  const core::ProcessOutput output;
+  core::GuardedProcess process(core::findProgram(command, kPackage), arguments, {},
+                               {{}, -1, output.descriptor()});
+  const bool ended = process.waitForEnd(kPatience);
+  process.kill();
+  std::string text = output.end(kMostOutput);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  if (!ended) text = "no answer within " + core::formatNumber(kPatience) + " s";
+  return {ended && process.exitCode() == 0, text};
+}
+
+Answer require(const std::string& command, const std::vector<std::string>& arguments) {
+  Answer answer = ask(command, arguments);
+  if (answer.succeeded) return answer;
+  constexpr std::size_t kShown = 1000;
+  throw core::InputError("Slurm refused " + command + ": " + answer.text.substr(0, kShown));
+}
+
+}  // namespace
+
+std::size_t requireSlurm() {
+  for (const char* command : {"sbatch", "squeue", "scancel", "scontrol"})
+    core::findProgram(command, kPackage);
+  for (const std::string& line :
+       core::splitText(require("scontrol", {"show", "config"}).text, '\n')) {
+    const std::size_t equals = line.find('=');
+    if (line.rfind("MaxArraySize", 0) != 0 || equals == std::string::npos) continue;
+    const auto size = std::stoul(line.substr(equals + 1));
+    if (size > 0) return size;
+    throw core::InputError("this cluster allows no job arrays (MaxArraySize is 0)");
+  }
+  throw core::InputError("scontrol show config names no MaxArraySize; is this Slurm?");
+}
+
+std::string submitJob(const std::vector<std::string>& arguments) {
+  const std::string text = require("sbatch", arguments).text;
+  const std::string line = text.substr(text.rfind('\n') + 1);  // below any word of the site
+  const std::string id = line.substr(0, line.find(';'));
+  if (!id.empty() && id.find_first_not_of("0123456789") == std::string::npos) return id;
+  throw core::InputError("sbatch gave no job id but '" + line + "'");
+}
+
+std::optional<std::size_t> queuedTasks(const std::string& job_name) {
+  const Answer answer =
+      ask("squeue", {"--me", "--noheader", "--array", "--format=%i", "--name=" + job_name});
+  if (!answer.succeeded) return std::nullopt;
+  return answer.text.empty() ? 0 : core::splitText(answer.text, '\n').size();
+}
+
+void cancelJobs(const std::string& job_name) { require("scancel", {"--me", "--name=" + job_name}); }
+
+void writeJobName(const fs::path& results, const std::string& job_name,
+                  const std::vector<std::string>& ids) {
+  const nlohmann::ordered_json json = {
+      {"schema_version", 1}, {"engine", "slurm"}, {"job_name", job_name}, {"jobs", ids}};
+  core::writeOwnFile(results / kEngineFile, json.dump(2) + "\n");
+}
+
+std::string readJobName(const fs::path& results) {
+  const fs::path file = results / kEngineFile;
+  if (!core::isFile(file)) {
+    throw core::InputError("'" + results.string() + "' has no " + kEngineFile +
+                           "; expected the results of a cdiff evaluate --engine slurm");
+  }
+  try {
+    return nlohmann::json::parse(core::readFile(file, "engine")).at("job_name");
+  } catch (const nlohmann::json::exception& error) {
+    throw core::InputError("'" + file.string() + "' names no jobs: " + error.what());
+  }
+}
+
+}  // namespace cdiff::evaluation
