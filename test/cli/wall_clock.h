@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <vector>
 
 #include "core/csv.h"
 #include "core/file.h"
@@ -75,6 +76,31 @@ inline std::map<std::string, std::string> filesWithoutWallClock(
     }
   }
   return files;
+}
+
+/// The same without what jobs of a cluster leave besides, and its place in the folder's record.
+inline std::map<std::string, std::string> filesOfAnyEngine(const std::filesystem::path& folder) {
+  auto files = filesWithoutWallClock(folder);
+  for (auto file = files.begin(); file != files.end();) {
+    const bool engine = file->first.rfind("slurm/", 0) == 0 || file->first == "engine.json";
+    file = engine ? files.erase(file) : std::next(file);
+  }
+  std::string& record = files[".cdiff_files"];
+  record = std::regex_replace(record, std::regex("(slurm|engine\\.json)\n"), "");
+  return files;
+}
+
+/// Names of files that are on one side only or differ.
+inline std::vector<std::string> differences(const std::map<std::string, std::string>& left,
+                                            const std::map<std::string, std::string>& right) {
+  std::vector<std::string> names;
+  for (const auto& [name, text] : left) {
+    if (right.count(name) == 0 || right.at(name) != text) names.push_back(name);
+  }
+  for (const auto& [name, text] : right) {
+    if (left.count(name) == 0) names.push_back(name);
+  }
+  return names;
 }
 
 }  // namespace cdiff::test
