@@ -42,8 +42,8 @@ class ProcessPool {
       startNext();
       if (stop_) interrupt();
       killLate();
-      collectEnded();
-      if (!running_.empty()) std::this_thread::sleep_for(kPollPeriod);
+      const bool ended = collectEnded();
+      if (!running_.empty() && !ended) std::this_thread::sleep_for(kPollPeriod);
     }
   }
 
@@ -101,7 +101,9 @@ class ProcessPool {
     }
   }
 
-  void collectEnded() {
+  /// Whether one has ended, so that another may start at once.
+  bool collectEnded() {
+    const std::size_t before = running_.size();
     for (std::size_t i = 0; i < running_.size();) {
       if (!running_[i].process->ended()) {
         ++i;
@@ -114,6 +116,7 @@ class ProcessPool {
                         ended.timed_out, interrupted_at_.has_value()});
       if (again) queue_.push_front(ended.job);
     }
+    return running_.size() != before;
   }
 
   std::deque<std::size_t> queue_;
