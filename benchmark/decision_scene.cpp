@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "decision_scene.h"
 
+#include <cmath>
+
 #include "e2e_cdiff/core/random.h"
 #include "session/session_request.h"
 
@@ -11,6 +13,8 @@ namespace {
 constexpr double kSpeed = 5.0;     // of all vehicles [m/s]
 constexpr double kStart = 5.0;     // of the ego on its route [m]
 constexpr double kSpacing = 8.0;   // [m]
+constexpr int kRow = 16;           // CBVs one behind the other
+constexpr double kAside = 3.5;     // of a row from the one before, to the left [m]
 constexpr double kRadius = 150.0;  // of traffic around the middle of the row [m]
 
 session::ScenarioOptions scenarioWith(const std::string& cbv_planner,
@@ -59,11 +63,11 @@ void fillWithNoise(const core::RandomStream& random, std::vector<traffic::Camera
 }  // namespace
 
 DecisionScene::DecisionScene(const std::string& cbv_planner, std::size_t traffic,
-                             const std::string& ego_planner)
+                             const std::string& ego_planner, int cbvs)
     : setup_(scenarioWith(cbv_planner, ego_planner)),
-      images_(kCbvs),
+      images_(static_cast<std::size_t>(cbvs)),
       ego_images_(setup_.rigs().of(traffic::kEgoSlot).cameras.size()) {
-  addRow();
+  addRows(cbvs);
   addTraffic(traffic);
   renewImages();
 }
@@ -97,12 +101,19 @@ std::vector<planning::PlanningTask> DecisionScene::egoTask() const {
   return {task};
 }
 
-void DecisionScene::addRow() {
-  for (int i = 0; i <= kCbvs; ++i) {
-    traffic::Vehicle vehicle = vehicleOn(setup_.egoRoute().path(), kStart + kSpacing * i);
-    vehicle.id = i == 0 ? traffic::kEgoId : "cbv" + std::to_string(i);
-    vehicle.role = i == 0 ? traffic::VehicleRole::kEgo : traffic::VehicleRole::kCbv;
-    vehicle.cbv_slot = i - 1;
+void DecisionScene::addRows(int cbvs) {
+  const geometry::Polyline& path = setup_.egoRoute().path();
+  snapshot_.vehicles.push_back(vehicleOn(path, kStart));
+  snapshot_.vehicles.back().id = traffic::kEgoId;
+  snapshot_.vehicles.back().role = traffic::VehicleRole::kEgo;
+  for (int slot = 0; slot < cbvs; ++slot) {
+    traffic::Vehicle vehicle = vehicleOn(path, kStart + kSpacing * (slot % kRow + 1));
+    const double aside = kAside * (slot / kRow);
+    const double heading = vehicle.state.heading;
+    vehicle.state.position += aside * Eigen::Vector2d(-std::sin(heading), std::cos(heading));
+    vehicle.id = "cbv" + std::to_string(slot + 1);
+    vehicle.role = traffic::VehicleRole::kCbv;
+    vehicle.cbv_slot = slot;
     snapshot_.vehicles.push_back(vehicle);
   }
 }

@@ -9,14 +9,15 @@
 
 namespace cdiff::benchmark {
 
-/// What planners decide on: an ego and CBVs one behind the other on the ego route of a shipped
+/// What planners decide on: an ego and CBVs one behind the other along the ego route of a shipped
 /// scenario, each with an image of its own, and traffic at fixed places on the lanes around them.
 class DecisionScene {
  public:
-  static constexpr int kCbvs = 8;  ///< 8 m apart, the first 8 m ahead of the ego
-  /// Planners as in a scenario, empty: the default; `traffic`: further vehicles within 150 m.
+  static constexpr int kCbvs = 8;  ///< of a scene that names no other number
+  /// Planners as in a scenario, empty: the default; `traffic`: further vehicles within 150 m;
+  /// `cbvs`: 8 m apart, the first 8 m ahead of the ego, in rows of 16 side by side.
   explicit DecisionScene(const std::string& cbv_planner = "", std::size_t traffic = 0,
-                         const std::string& ego_planner = "");
+                         const std::string& ego_planner = "", int cbvs = kCbvs);
 
   /// A decision later; every CBV sees something new if asked.
   void advance(bool new_images);
@@ -28,7 +29,7 @@ class DecisionScene {
   const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
 
  private:
-  void addRow();
+  void addRows(int cbvs);
   void addTraffic(std::size_t count);
   void renewImages();
 

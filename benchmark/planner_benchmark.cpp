@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <map>
 #include <memory>
 
 #include "benchmark.h"
@@ -20,6 +21,7 @@ namespace {
 constexpr int kDecisions = 60;
 constexpr int kVehicles = DecisionScene::kCbvs;
 constexpr int kRounds = 12;
+constexpr int kFirstDecisions = 3;  // are not timed
 
 /// What is planned with: sampler mode, guidance profile, precision of the encoder and threads.
 struct Setting {
@@ -47,14 +49,14 @@ std::unique_ptr<planners::DiffusionPlanner> makePlanner(const DecisionScene& sce
 
 /// Milliseconds of planning `count` vehicles in one call, ascending.
 std::vector<double> planTimes(DecisionScene& scene, const Setting& setting, int count,
-                              bool new_images) {
+                              bool new_images, int decisions = kDecisions) {
   const auto planner = makePlanner(scene, setting);
   std::vector<double> times;
-  for (int i = 0; i < kDecisions; ++i) {
+  for (int i = 0; i < decisions; ++i) {
     scene.advance(new_images);
     const auto tasks = scene.tasks(0, count);
     const double seconds = secondsOf([&] { planner->plan(scene.snapshot(), tasks); });
-    if (i > 2) times.push_back(1e3 * seconds);
+    if (i >= kFirstDecisions) times.push_back(1e3 * seconds);
   }
   std::sort(times.begin(), times.end());
   return times;
@@ -175,18 +177,28 @@ void addBatch(Figures& figures, DecisionScene& scene) {
   const double batch = median(planTimes(scene, three, kVehicles, false));
   const double batch_default = median(planTimes(scene, standard, kVehicles, false));
   const double singles = singlesTime(scene, three);
-  const double images = median(planTimes(scene, three, kVehicles, true));
-  const double one_image = median(planTimes(scene, three, 1, true));
-  const Setting two_threads{"real_time", kThreeObjectives, "auto", 2};
-  const double shared = median(planTimes(scene, two_threads, kVehicles, true));
-  figures.push_back({"planner_eight_cbvs_p50", images, "ms", ""});
-  figures.push_back({"planner_eight_cbvs_per_one", images / one_image, "times", "<=8"});
-  figures.push_back(
-      {"planner_eight_cbvs_two_threads_per_one", shared / one_image, "times", "<=4.5"});
   figures.push_back({"planner_eight_cbvs_cached_p50", batch, "ms", "<=25"});
   figures.push_back({"planner_eight_cbvs_cached_default_profile_p50", batch_default, "ms", ""});
   figures.push_back({"planner_eight_singles_cached_p50", singles, "ms", ""});
   figures.push_back({"planner_eight_in_batch_per_eight_singles", batch / singles, "", "<=0.75"});
+}
+
+/// Images included, 1 to 64 vehicles in one call: each decision and what it costs per single one.
+void addMany(Figures& figures, std::int64_t threads, const std::string& suffix,
+             const std::map<int, std::string>& goals) {
+  constexpr int kMost = 64;
+  constexpr int kTimed = 480;  // vehicles, in 8 to 60 decisions
+  const Setting single{"real_time", kThreeObjectives};
+  const Setting setting{"real_time", kThreeObjectives, "auto", threads};
+  DecisionScene scene("", 0, "", kMost);
+  const double one = median(planTimes(scene, single, 1, true));
+  for (const auto& [count, goal] : goals) {
+    const int decisions = kFirstDecisions + std::min(kDecisions, std::max(8, kTimed / count));
+    const double time = median(planTimes(scene, setting, count, true, decisions));
+    const std::string name = "planner_" + std::to_string(count) + "_cbvs" + suffix;
+    figures.push_back({name + "_p50", time, "ms", ""});
+    figures.push_back({name + "_per_one", time / one, "times", goal});
+  }
 }
 
 }  // namespace
@@ -197,6 +209,8 @@ void benchmarkPlanner(Figures& figures) {
   addPrecisions(figures, scene);
   addSingles(figures, scene, encoder_p95);
   addBatch(figures, scene);
+  addMany(figures, 1, "", {{1, ""}, {8, "<=8"}, {16, ""}, {32, ""}, {64, "<=52"}});
+  addMany(figures, 2, "_two_threads", {{1, ""}, {8, "<=4.5"}, {16, ""}, {32, ""}, {64, "<=28"}});
   addEager(figures, scene);
 }
 

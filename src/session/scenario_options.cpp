@@ -191,7 +191,7 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
                        "Planner of the CBVs, or external; several, by slot, as [a, b] or a+b: "
                        "slot k has the (k mod n)-th."},
                       cbv_planner, '+');
-  visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
+  visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 64);
   visitor.group({"cbv", "", "CBV identification."}, cbv);
   planner_options.describe(visitor);
   visitor.text({"guidance_profile", "",

@@ -139,8 +139,12 @@ TEST(SessionRequest, BadKeysAndValuesNameTheSource) {
   request.set = {"max_cbvs=1"};
   EXPECT_TRUE(mentions(errorOf(request),
                        "--set: unknown key 'max_cbvs'; the nearest known key is 'max_cbv'"));
-  request.set = {"max_cbv=-1"};
-  EXPECT_TRUE(mentions(errorOf(request), "[0, 16]")) << errorOf(request);
+  for (const char* beyond : {"max_cbv=-1", "max_cbv=65"}) {
+    request.set = {beyond};
+    EXPECT_TRUE(mentions(errorOf(request), "[0, 64]")) << errorOf(request);
+  }
+  request.set = {"max_cbv=64"};
+  EXPECT_EQ(resolveRequest(request).max_cbv, 64);
   request.set = {"decision_period=0.12"};
   EXPECT_TRUE(mentions(errorOf(request), "multiple of simulation_step")) << errorOf(request);
   request.set = {"network=nowhere"};
