@@ -144,11 +144,18 @@ std::unique_ptr<diffusion::StateBranch> DiffusionPlanner::stateBranch(
       vehicle_, model_->normalizer, speeds, dynamics::throttleResponse(options_.response));
 }
 
+/// In parts of few samples, whose values stay in the cache from layer to layer.
 void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Solution*>& solutions) {
+  constexpr std::int64_t kSamples = 16;
+  const auto together =
+      static_cast<std::size_t>(std::max<std::int64_t>(1, kSamples / guidance_.candidates));
   workers_.forEach(solutions.size(), [&](Worker& worker, std::size_t begin, std::size_t end) {
-    solvePart(
-        tick, worker,
-        {solutions.begin() + static_cast<long>(begin), solutions.begin() + static_cast<long>(end)});
+    for (std::size_t first = begin; first < end; first += together) {
+      const std::size_t last = std::min(end, first + together);
+      solvePart(tick, worker,
+                {solutions.begin() + static_cast<long>(first),
+                 solutions.begin() + static_cast<long>(last)});
+    }
   });
 }
 

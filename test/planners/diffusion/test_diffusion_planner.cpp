@@ -53,6 +53,33 @@ TEST_F(DiffusionPlannerTest, SameCallsSameActionsAndEachVehicleAlone) {
   }
 }
 
+TEST_F(DiffusionPlannerTest, ManyVehiclesPlanAsEachAloneOnAnyNumberOfThreads) {
+  constexpr int kMany = 20;  // more than the planner samples together
+  for (int slot = 2; slot < kMany; ++slot) {
+    const double x = 50.0 + 10.0 * slot;
+    snapshot_.vehicles.push_back(
+        testing::vehicleAt("cbv" + std::to_string(slot), x, 0.0, 0.0, 5.0));
+    snapshot_.vehicles.back().role = traffic::VehicleRole::kCbv;
+    snapshot_.vehicles.back().cbv_slot = slot;
+  }
+  goTo(2);
+  std::vector<planning::PlanningTask> many;
+  for (int slot = 0; slot < kMany; ++slot) {
+    const auto index = static_cast<std::size_t>(slot);
+    many.push_back({slot, &snapshot_.vehicles[index + 1], &route_, 8.0,
+                    test::frontViews(&images_[index % 2])});
+  }
+  DiffusionOptions three_threads = optionsOf();
+  three_threads.threads = 3;
+  const auto one = makePlanner().plan(snapshot_, many);
+  const auto three = makeDiffusion(three_threads)->plan(snapshot_, many);
+  DiffusionPlanner alone = makePlanner();  // forgets whoever is not in the call
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    EXPECT_EQ(one[i].action, three[i].action) << "slot " << i;
+    EXPECT_EQ(one[i].action, alone.plan(snapshot_, {many[i]})[0].action) << "slot " << i;
+  }
+}
+
 TEST_F(DiffusionPlannerTest, FollowsOtherGuidanceAsIfMadeWithIt) {
   DiffusionPlanner steered = makePlanner();
   const auto unsteered = makePlanner().plan(snapshot_, tasks());
