@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <polyclipping/clipper.hpp>
 
@@ -88,11 +89,42 @@ namespace {
 constexpr double kMargin = 64.0;    // [m] of indexed ground around the border
 constexpr double kLeastCell = 2.0;  // [m]
 constexpr double kFarCellShare =
-    0.25;  // cells need not be smaller than this share of their distance
+    0.25;                       // cells need not be smaller than this share of their distance
+constexpr double kTile = 64.0;  // [m] squares of this size are split when asked for
 constexpr std::size_t kFewSegments = 4;  // such a list is not worth splitting
 constexpr double kTieTolerance = 1e-10;  // relative, of squared distances
 
 }  // namespace
+
+/// Quadtree over a square. Node 0 is the square itself.
+struct BorderIndex::Tree {
+  /// Square cell with four children from `first_child` on, or else a tile, or else a leaf, whose
+  /// segments are candidates[begin, end).
+  struct Node {
+    std::uint32_t first_child = 0;  ///< 0: none
+    std::uint32_t tile = 0;         ///< its number from 1 on; 0: none
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+  };
+
+  Tree() : nodes(1) {}
+  ~Tree();
+
+  std::vector<Node> nodes;
+  std::vector<SegmentIndex> candidates;
+  std::vector<std::unique_ptr<Tile>> tiles;
+};
+
+/// A square that is split when a query first comes to it.
+struct BorderIndex::Tile {
+  Square square;
+  std::vector<SegmentIndex> segments;  ///< that can be nearest to its points
+  std::once_flag made;
+  Tree tree;
+};
+
+BorderIndex::Tree::~Tree() = default;
+BorderIndex::~BorderIndex() = default;
 
 /// Nearest segment so far. Where the nearest point is a vertex, its segments tie; the one that the
 /// point lies farthest beside is the one that bounds the point's sector around the vertex, so its
@@ -124,8 +156,8 @@ BorderIndex::BorderIndex(const std::vector<Ring>& rings) {
   while (root_.half < 0.5 * (high - low).maxCoeff() + kMargin) root_.half *= 2.0;
   std::vector<SegmentIndex> all(segments_.size());
   std::iota(all.begin(), all.end(), SegmentIndex{0});
-  nodes_.emplace_back();
-  build(0, root_, all);
+  tree_ = std::make_unique<Tree>();
+  build(*tree_, 0, root_, all, kTile);
 }
 
 void BorderIndex::addSegments(const Ring& ring) {
@@ -142,8 +174,8 @@ double BorderIndex::distance(const Segment& segment, const Eigen::Vector2d& poin
   return (segment.begin + along * segment.along - point).norm();
 }
 
-void BorderIndex::build(std::uint32_t node, const Square& square,
-                        const std::vector<SegmentIndex>& from_parent) {
+bool BorderIndex::keepNear(const Square& square, const std::vector<SegmentIndex>& from_parent,
+                           std::vector<SegmentIndex>& kept) const {
   std::vector<double> distances(from_parent.size());
   for (std::size_t i = 0; i < from_parent.size(); ++i) {
     distances[i] = distance(segments_[from_parent[i]], square.center);
@@ -151,23 +183,41 @@ void BorderIndex::build(std::uint32_t node, const Square& square,
   // A segment nearest to a point at most r from the center is at most least + 2 r from the center.
   const double least = *std::min_element(distances.begin(), distances.end());
   const double limit = least + 2.0 * std::sqrt(2.0) * square.half + 1e-6;
-  std::vector<SegmentIndex> kept;
   for (std::size_t i = 0; i < from_parent.size(); ++i) {
     if (distances[i] <= limit) kept.push_back(from_parent[i]);
   }
   const double size = 2.0 * square.half;
-  if (kept.size() <= kFewSegments || size <= kLeastCell || size <= kFarCellShare * least) {
-    nodes_[node].begin = static_cast<std::uint32_t>(candidates_.size());
-    candidates_.insert(candidates_.end(), kept.begin(), kept.end());
-    nodes_[node].end = static_cast<std::uint32_t>(candidates_.size());
+  return kept.size() > kFewSegments && size > kLeastCell && size > kFarCellShare * least;
+}
+
+void BorderIndex::build(Tree& tree, std::uint32_t node, const Square& square,
+                        const std::vector<SegmentIndex>& from_parent, double largest_tile) const {
+  std::vector<SegmentIndex> kept;
+  if (!keepNear(square, from_parent, kept)) {
+    tree.nodes[node].begin = static_cast<std::uint32_t>(tree.candidates.size());
+    tree.candidates.insert(tree.candidates.end(), kept.begin(), kept.end());
+    tree.nodes[node].end = static_cast<std::uint32_t>(tree.candidates.size());
     return;
   }
-  const auto first_child = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node].first_child = first_child;
-  nodes_.resize(nodes_.size() + 4);
-  for (int quadrant = 0; quadrant < 4; ++quadrant) {
-    build(first_child + static_cast<std::uint32_t>(quadrant), square.child(quadrant), kept);
+  if (2.0 * square.half <= largest_tile) {
+    tree.tiles.push_back(std::make_unique<Tile>());
+    tree.tiles.back()->square = square;
+    tree.tiles.back()->segments = std::move(kept);
+    tree.nodes[node].tile = static_cast<std::uint32_t>(tree.tiles.size());
+    return;
   }
+  const auto first_child = static_cast<std::uint32_t>(tree.nodes.size());
+  tree.nodes[node].first_child = first_child;
+  tree.nodes.resize(tree.nodes.size() + 4);
+  for (int quadrant = 0; quadrant < 4; ++quadrant) {
+    build(tree, first_child + static_cast<std::uint32_t>(quadrant), square.child(quadrant), kept,
+          largest_tile);
+  }
+}
+
+const BorderIndex::Tree& BorderIndex::treeOf(Tile& tile) const {
+  std::call_once(tile.made, [&] { build(tile.tree, 0, tile.square, tile.segments, 0.0); });
+  return tile.tree;
 }
 
 void BorderIndex::examine(const Segment& segment, const Eigen::Vector2d& point,
@@ -190,20 +240,26 @@ BorderIndex::Nearest BorderIndex::nearest(const Eigen::Vector2d& point) const {
     for (const Segment& segment : segments_) examine(segment, point, nearest);
     return nearest;
   }
-  const Node* node = &nodes_.front();
+  const Tree* tree = tree_.get();
+  const Tree::Node* node = &tree->nodes.front();
   double x = root_.center.x();
   double y = root_.center.y();
   double half = root_.half;
-  while (node->first_child != 0) {
+  while (node->first_child != 0 || node->tile != 0) {
+    if (node->tile != 0) {
+      tree = &treeOf(*tree->tiles[node->tile - 1]);
+      node = &tree->nodes.front();
+      continue;
+    }
     const bool right = point.x() >= x;
     const bool upper = point.y() >= y;
     half *= 0.5;
     x += right ? half : -half;
     y += upper ? half : -half;
-    node = &nodes_[node->first_child + (right ? 1u : 0u) + (upper ? 2u : 0u)];
+    node = &tree->nodes[node->first_child + (right ? 1u : 0u) + (upper ? 2u : 0u)];
   }
   for (std::uint32_t i = node->begin; i < node->end; ++i) {
-    examine(segments_[candidates_[i]], point, nearest);
+    examine(segments_[tree->candidates[i]], point, nearest);
   }
   return nearest;
 }

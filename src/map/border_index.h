@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "e2e_cdiff/map/drivable_area.h"
@@ -29,12 +30,16 @@ std::vector<Ring> uniteOutlines(const std::vector<Strip>& strips,
                                 const std::vector<Ring>& polygons);
 
 /// Exact signed distance [m] from a point of the map frame to border rings: a quadtree whose leaves
-/// list every border segment that can be nearest to any of their points.
-/// Immutable after construction, so queries may run in parallel.
+/// list every border segment that can be nearest to any of their points. Squares of 64 m are split
+/// when a query first comes to them: a session seldom comes to all of a town. Queries may run in
+/// parallel.
 class BorderIndex {
  public:
   /// Rings with the area on their left. Throws InputError without any.
   explicit BorderIndex(const std::vector<Ring>& rings);
+  ~BorderIndex();
+  BorderIndex(const BorderIndex&) = delete;
+  BorderIndex& operator=(const BorderIndex&) = delete;
 
   /// Positive on the area. On the border the gradient is the normal toward the area.
   SignedDistance query(const Eigen::Vector2d& point) const;
@@ -48,30 +53,32 @@ class BorderIndex {
     Eigen::Vector2d along;  ///< unit vector
     double length;
   };
-  /// Square cell; `first_child` = 0 marks a leaf, whose segments are candidates_[begin, end).
-  struct Node {
-    std::uint32_t first_child = 0;
-    std::uint32_t begin = 0;
-    std::uint32_t end = 0;
-  };
   struct Square {
     Eigen::Vector2d center;
     double half = 0.0;
     Square child(int quadrant) const;
   };
+  struct Tree;
+  struct Tile;
   struct Nearest;
 
   void addSegments(const Ring& ring);
-  void build(std::uint32_t node, const Square& square,
-             const std::vector<SegmentIndex>& from_parent);
+  /// The segments of `from_parent` that can be nearest to a point of the square, and whether the
+  /// square is worth splitting.
+  bool keepNear(const Square& square, const std::vector<SegmentIndex>& from_parent,
+                std::vector<SegmentIndex>& kept) const;
+  /// Splits squares above `largest_tile` [m] and makes tiles of the others; 0 splits all.
+  void build(Tree& tree, std::uint32_t node, const Square& square,
+             const std::vector<SegmentIndex>& from_parent, double largest_tile) const;
+  /// Of a tile, which is split if it is not yet.
+  const Tree& treeOf(Tile& tile) const;
   void examine(const Segment& segment, const Eigen::Vector2d& point, Nearest& nearest) const;
   static double distance(const Segment& segment, const Eigen::Vector2d& point);
   Nearest nearest(const Eigen::Vector2d& point) const;
 
   std::vector<Segment> segments_;
-  std::vector<Node> nodes_;
-  std::vector<SegmentIndex> candidates_;
   Square root_;
+  std::unique_ptr<Tree> tree_;
 };
 
 }  // namespace cdiff::map

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 
 #include "core/file.h"
@@ -248,6 +249,25 @@ TEST(DrivableArea, EqualsTheDefinitionAtAndAroundCorners) {
       ASSERT_NEAR(area.signedDistance(point), definition(rings, point), 1e-6)
           << "at " << point.transpose();
     }
+  }
+}
+
+TEST(DrivableArea, AnswersAreTheSameWhoeverAsksFirst) {
+  // 900 m of road: several squares, which are split when a query first comes to them.
+  NetworkText text;
+  text.edge("long", {"0,0 900,0"});
+  const DrivableArea shared(text.network());
+  std::vector<std::future<void>> askers;
+  for (int i = 0; i < 4; ++i) {
+    askers.push_back(std::async(std::launch::async, [&, i] {
+      for (int j = 0; j < 450; ++j) shared.signedDistance({2.0 * ((j + 100 * i) % 450), 0.5});
+    }));
+  }
+  for (std::future<void>& asker : askers) asker.get();
+  const DrivableArea alone(text.network());
+  for (int x = 898; x >= 0; --x) {
+    const Point point(x, 0.5);
+    ASSERT_EQ(shared.signedDistance(point), alone.signedDistance(point)) << "at x " << x;
   }
 }
 
