@@ -395,7 +395,7 @@ int demo(const fs::path& folder) {
 CLI::App* addRunOptions(CLI::App& program, RunArguments& arguments) {
   CLI::App* command = program.add_subcommand("run", "Run one session and write its result folder");
   session::SessionRequest& request = arguments.request;
-  command->add_option("scenario", request.scenario, "Shipped scenario or scenario file");
+  command->add_option("scenario", request.scenario, "Shipped scenario, scenario file, or OpenSCENARIO file (*.xosc)");
   command->add_option("--bench2drive", request.bench2drive,
                       "Bench2Drive route file, instead of a scenario");
   command->add_option("--route", request.route, "Id of a route in that file");
@@ -418,6 +418,8 @@ CLI::App* addRunOptions(CLI::App& program, RunArguments& arguments) {
                     "Replace what an earlier session left in the result folder");
   command->add_flag("--record", arguments.record, "Also write session.bag, for replay and rviz");
   command->add_flag("--video", request.video, "Also write session.mp4: front view beside top view");
+  command->add_flag("--ignore-unsupported", request.ignore_unsupported,
+                    "Go on without elements of an OpenSCENARIO file that are not supported");
   CLI::Option* watch = command->add_flag("--watch", arguments.watch,
                                          "Show and steer the session on a page of this computer");
   command

@@ -23,6 +23,8 @@ struct RouteOptions {
   double start_speed = 0.0;             ///< the ego's speed at the start [m/s]
 
   void describe(core::OptionsVisitor& visitor);
+  /// Whether any source is given.
+  bool given() const { return !edges.empty() || !points.empty() || !bench2drive_file.empty(); }
   /// Throws InputError when not exactly one source is given.
   void validate() const;
 };

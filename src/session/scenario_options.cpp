@@ -138,6 +138,13 @@ void EgoOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"lidar", "", "Sparse lidar of the ego."}, lidar);
 }
 
+void StoryboardOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text({"file", "", "OpenSCENARIO file (*.xosc); it also gives the ego's route."}, file,
+               {});
+  visitor.flag({"ignore_unsupported", "", "Go on without elements that are not supported."},
+               ignore_unsupported);
+}
+
 void ReportOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"front_view_rate", "1/s", "Pictures of each CBV's front view in report.html."},
                  front_view_rate, 0.0, 10.0);
@@ -169,6 +176,7 @@ void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
        "Shipped network, or file: SUMO (*.net.xml), OpenDRIVE (*.xodr) or OpenStreetMap (*.osm)."},
       network, {});
   visitor.group({"route", "", "Route of the ego."}, route);
+  visitor.group({"storyboard", "", "Vehicles that a story moves."}, storyboard);
   visitor.text({"demand", "", "Background traffic: generated, none, or a route file."}, demand, {});
   visitor.group({"traffic", "", "Generated demand."}, traffic);
   visitor.number({"begin_time", "s", "SUMO's clock at the start, for demand files."}, begin_time,
@@ -228,7 +236,7 @@ void ScenarioOptions::describeTime(core::OptionsVisitor& visitor) {
 void ScenarioOptions::validate() const {
   if (network.empty())
     throw InputError("key 'network' is missing; expected a shipped network or a file");
-  route.validate();
+  if (storyboard.file.empty() || route.given()) route.validate();
   cbv.validate();
   planner_options.validate();
   guidance.validate("guidance.");
@@ -332,6 +340,8 @@ ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOpti
   }
   options.metrics.speed_target_file =
       resolveFile(options.metrics.speed_target_file, file.parent_path(), options.network);
+  options.storyboard.file =
+      resolveFile(options.storyboard.file, file.parent_path(), options.network);
   options.route.bench2drive_file =
       resolveFile(options.route.bench2drive_file, file.parent_path(), options.network);
   return options;

@@ -67,6 +67,14 @@ struct ReportOptions {
   void describe(core::OptionsVisitor& visitor);
 };
 
+/// The story that a session plays with its own vehicles.
+struct StoryboardOptions {
+  std::string file;                 ///< *.xosc; empty: none
+  bool ignore_unsupported = false;  ///< go on without what is not supported
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
 /// A scenario: everything that decides a session, as one YAML file (schema of `cdiff validate`).
 struct ScenarioOptions {
   ScenarioOptions();
@@ -75,6 +83,7 @@ struct ScenarioOptions {
   std::string name = "unnamed";
   std::string network;                ///< shipped name or file (*.net.xml, *.xodr, *.osm)
   map::RouteOptions route;            ///< route of the ego
+  StoryboardOptions storyboard;       ///< its ego starts where it says, where no route is given
   std::string demand = "generated";   ///< generated | none | a *.rou.xml file
   simulation::DemandOptions traffic;  ///< generated demand
   double begin_time = 0.0;            ///< SUMO's clock at the start, for demand files [s]

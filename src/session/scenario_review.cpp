@@ -106,7 +106,7 @@ double drivingTime(const ScenarioOptions& options, const map::Route& route) {
 }
 
 std::vector<std::string> scenarioWarnings(const SessionSetup& setup) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = setup.ignoredElements();
   const VerdictOptions& verdict = setup.options().verdict;
   if (verdict.judge && !hasRules(verdict)) {
     warnings.emplace_back(

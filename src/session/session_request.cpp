@@ -14,6 +14,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "planning/plan_tracker.h"
 #include "session/preset_file.h"
+#include "session/storyboard_scenario.h"
 
 namespace cdiff::session {
 namespace {
@@ -237,6 +238,9 @@ ScenarioOptions baseScenario(const SessionRequest& request, const ScenarioOption
         "nothing to run: give a scenario (name or file), or --bench2drive FILE --route ID "
         "--network NET");
   }
+  if (isOpenScenario(request.scenario)) {
+    return openScenarioOptions(request.scenario, base, request.network.empty());
+  }
   return loadScenario(request.scenario, base);
 }
 
@@ -255,6 +259,7 @@ ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOption
   apply("cbv_planner", request.cbv_planner);
   apply("seed", request.seed);
   if (request.video) options.video = true;
+  if (request.ignore_unsupported) options.storyboard.ignore_unsupported = true;
   if (request.steering) options.steering = *request.steering;
   for (const std::string& assignment : request.set)
     core::overrideOption(assignment, request.set_source, options);

@@ -69,7 +69,7 @@ ScenarioOptions defaultScenario();
 /// What a user asks for on a command line or in a launch file, resolved to one scenario.
 /// Empty texts mean "not given".
 struct SessionRequest {
-  std::string scenario;     ///< shipped name or file
+  std::string scenario;     ///< shipped name or file, also *.xosc
   std::string bench2drive;  ///< Bench2Drive route file, instead of a scenario
   std::string route;        ///< id of a route in it
   std::string network;      ///< network; replaces the scenario's
@@ -79,6 +79,7 @@ struct SessionRequest {
   std::string seed;
   std::optional<std::vector<SteeringEntry>> steering{};  ///< instead of the scenario's list
   bool video = false;                                    ///< session.mp4 too
+  bool ignore_unsupported = false;                       ///< elements of an OpenSCENARIO file
   std::vector<std::string> set;                          ///< "key=value" each, applied last
   std::string set_source = "--set";                      ///< how the user knows `set`, for errors
 };

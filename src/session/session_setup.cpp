@@ -45,8 +45,8 @@ SessionSetup::SessionSetup(const ScenarioOptions& options)
       rigs_(options_),
       import_(imported(options.network)),
       roads_(roadsOf(import_)),
-      ego_route_(
-          map::matchRoute(network(), map::makeRoute(graph(), options_.route).path().points())) {}
+      play_(readPlay(options_.storyboard, import_, graph())),
+      ego_route_(map::matchRoute(network(), plannedRoute().path().points())) {}
 
 SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
                            const std::vector<Eigen::Vector3d>& ego_route_points)
@@ -55,6 +55,16 @@ SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork 
       import_(std::move(import)),
       roads_(roadsOf(import_)),
       ego_route_(map::matchRoute(network(), ego_route_points)) {}
+
+/// As the scenario gives it, else as its storyboard does.
+map::Route SessionSetup::plannedRoute() const {
+  if (play_ != nullptr && !options_.route.given()) return egoRouteOf(*play_);
+  return map::makeRoute(graph(), options_.route);
+}
+
+std::vector<std::string> SessionSetup::ignoredElements() const {
+  return play_ == nullptr ? std::vector<std::string>() : play_->scenario.ignored;
+}
 
 planning::PlanningContext SessionSetup::planningContext() const {
   return {network(),
@@ -78,7 +88,7 @@ std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner(const std::strin
              options_.guidance, "guidance.", options_.cbv_rig, "cbv_rig"});
 }
 
-std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {
+std::unique_ptr<simulation::TrafficSimulator> SessionSetup::makeSimulator() const {
   simulation::SumoSession session;
   session.network_file = import_.file;
   session.network_source = import_.source;
@@ -88,7 +98,10 @@ std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {
   session.simulation_step = options_.simulation_step;
   session.seed = static_cast<std::uint64_t>(options_.seed);
   session.lights_green = options_.lights == "green";
-  return std::make_unique<simulation::SumoSimulator>(options_.sumo, session, network());
+  auto sumo = std::make_unique<simulation::SumoSimulator>(options_.sumo, session, network());
+  if (play_ == nullptr) return sumo;
+  return std::make_unique<storyboard::StoryboardTraffic>(std::move(sumo), *play_,
+                                                         options_.simulation_step);
 }
 
 double SessionSetup::cbvTargetSpeed(const std::string& vehicle_id) const {

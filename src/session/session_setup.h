@@ -11,6 +11,7 @@
 #include "map/import/network_import.h"
 #include "metrics/session_metrics.h"
 #include "session/scenario_options.h"
+#include "session/storyboard_scenario.h"
 #include "session/vehicle_rigs.h"
 
 namespace cdiff::session {
@@ -45,9 +46,11 @@ class SessionSetup {
   }
   /// One of another name in its place.
   std::unique_ptr<planning::Planner> makeCbvPlanner(const std::string& name) const;
-  /// SUMO with the network, the demand file and the lights of the scenario. Throws InputError and
+  /// SUMO with the network, the demand file, the lights and the storyboard of the scenario. Throws InputError and
   /// SimulatorError as it does.
-  std::unique_ptr<simulation::SumoSimulator> makeSimulator() const;
+  std::unique_ptr<simulation::TrafficSimulator> makeSimulator() const;
+  /// What the storyboard has that is not supported and was ignored, with file and line.
+  std::vector<std::string> ignoredElements() const;
   /// v* of a CBV before the lane's limit [m/s].
   double cbvTargetSpeed(const std::string& vehicle_id) const;
   /// What the session is measured by, in every deployment.
@@ -63,12 +66,14 @@ class SessionSetup {
     map::LaneGraph graph;
     map::DrivableArea drivable_area;
   };
+  map::Route plannedRoute() const;
   static std::shared_ptr<const Roads> roadsOf(const map::ImportedNetwork& import);
 
   ScenarioOptions options_;
   VehicleRigs rigs_;
   map::ImportedNetwork import_;
   std::shared_ptr<const Roads> roads_;  ///< sessions on a network may share them
+  std::shared_ptr<const storyboard::Play> play_;  ///< nullptr without a storyboard
   map::Route ego_route_;
 };
 

@@ -136,6 +136,7 @@ World::World(const SessionSetup& setup, std::unique_ptr<simulation::TrafficSimul
       background_(setup, *simulator_),
       driven_(setup.options().vehicle),
       monitor_(setup.options().protocol, setup.egoRoute()) {
+  for (const std::string& text : setup.ignoredElements()) recordFault("storyboard", text);
   background_.warmUp();
   placeEgo();
   takeSnapshot();
@@ -335,6 +336,8 @@ void World::takeSnapshot() {
   snapshot_.contacts = std::move(found.contacts);
   leaving_ = std::move(found.leaving);
   snapshot_.status = monitor_.update(snapshot_);
+  if (snapshot_.status == SessionStatus::kRunning && simulator_->over())
+    snapshot_.status = SessionStatus::kCompleted;
   const bool running = snapshot_.status == SessionStatus::kRunning;
   snapshot_.decision_tick = running && snapshot_.tick % setup_.ticksPerDecision() == 0;
   snapshot_.faults = std::move(pending_faults_);

@@ -24,7 +24,7 @@ RESTRICTED = {
     "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "record", "page", "video", "node_graph"}),
 }
 # Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
-ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv reference_driver", "metrics guidance inference rendering simulation", "diffusion learning", "planning",
+ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv reference_driver", "metrics guidance inference rendering simulation", "diffusion learning storyboard", "planning",
          "planners", "session", "plugins suite record", "planner_training", "page exchange", "video watch what_if", "collection", "evaluation node_graph", "realism", "nodes cli"]
 RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
 

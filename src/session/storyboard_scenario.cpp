@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "session/storyboard_scenario.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "planners/planner_by_slot.h"
+#include "planners/registry.h"
+#include "storyboard/scenario_reader.h"
+
+namespace cdiff::session {
+namespace {
+
+using core::InputError;
+using storyboard::Entity;
+using storyboard::Scenario;
+
+std::string lowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return std::tolower(letter); });
+  return text;
+}
+
+const Entity& egoOf(const Scenario& scenario) {
+  for (const Entity& entity : scenario.entities)
+    if (lowerCase(entity.controller).find("external") != std::string::npos) return entity;
+  for (const Entity& entity : scenario.entities) {
+    const std::string name = lowerCase(entity.name);
+    if (name == "ego" || name == "hero") return entity;
+  }
+  throw InputError(scenario.entities.front().source.text() +
+                   ": no entity is the ego; expected one with a controller 'external_control', or "
+                   "one named Ego or hero");
+}
+
+/// Names of entities are ids of vehicles: those of SUMO, and "ego" is taken.
+void requireUsableNames(const Scenario& scenario, const Entity& ego) {
+  for (const Entity& entity : scenario.entities) {
+    if (&entity == &ego) continue;
+    if (entity.name != core::fileName(entity.name) || entity.name == traffic::kEgoId) {
+      throw InputError(entity.source.text() + ": '" + entity.name +
+                       "' cannot be the name of a vehicle; expected letters, digits, '_', '-' and "
+                       "'.', and not 'ego'");
+    }
+  }
+}
+
+/// The planner that a controller's name stands for, in a role; empty where there is none.
+std::string plannerOf(const Entity& entity, planners::Role role) {
+  const std::string name = lowerCase(entity.controller);
+  const planning::PlannerDescriptor* const descriptor = planners::findPlanner(name);
+  if (descriptor == nullptr) return {};
+  try {
+    planners::requirePlanner("controller", name, role);
+  } catch (const InputError& error) {
+    throw InputError(entity.source.text() + ": " + error.what());
+  }
+  return name;
+}
+
+/// Speed that the ego is told to start with [m/s].
+double startSpeedOf(const Scenario& scenario, const std::string& ego) {
+  double speed = 0.0;
+  for (const storyboard::InitAction& init : scenario.init) {
+    const auto* const action = std::get_if<storyboard::SpeedAction>(&init.action.what);
+    if (init.entity == ego && action != nullptr && action->entity.empty()) speed = action->value;
+  }
+  return speed;
+}
+
+void chooseCbvs(const Scenario& scenario, const Entity& ego, ScenarioOptions& options) {
+  std::vector<std::string> planners;
+  options.cbv.only.clear();
+  for (const Entity& entity : scenario.entities) {
+    const std::string planner =
+        &entity == &ego ? "" : plannerOf(entity, planners::Role::kCbv);
+    if (planner.empty()) continue;
+    planners.push_back(planner);
+    options.cbv.only.push_back(entity.name);
+  }
+  options.max_cbv = static_cast<std::int64_t>(std::min<std::size_t>(planners.size(), 16));
+  if (planners.empty()) return;
+  const bool same = std::all_of(planners.begin(), planners.end(),
+                                [&](const std::string& name) { return name == planners[0]; });
+  options.cbv_planner = same ? planners[0] : core::joinText(planners, "+");
+}
+
+/// A session passes that ends without a contact that is the ego's fault.
+VerdictOptions rules() {
+  VerdictOptions verdict = VerdictOptions::standard();
+  verdict.minimum_route_completion = 0.0;
+  return verdict;
+}
+
+}  // namespace
+
+bool isOpenScenario(const std::string& name_or_file) {
+  return core::endsWith(name_or_file, ".xosc");
+}
+
+ScenarioOptions openScenarioOptions(const std::string& file, const ScenarioOptions& base,
+                                    bool own_network) {
+  const Scenario scenario = storyboard::readScenario(file, true);
+  if (own_network && !core::isFile(scenario.network)) {
+    throw InputError(scenario.network_source.text() + ": there is no network file '" +
+                     scenario.network + "'; give one by --network");
+  }
+  const Entity& ego = egoOf(scenario);
+  requireUsableNames(scenario, ego);
+  ScenarioOptions options = base;
+  options.name = scenario.name;
+  options.storyboard.file = std::filesystem::absolute(file).string();
+  options.network = scenario.network;
+  options.demand = "none";
+  options.verdict = rules();
+  const double speed = startSpeedOf(scenario, ego.name);
+  options.route.start_speed = std::min(speed, 60.0);
+  if (speed > 0.5) options.target_speed = std::min(speed, 40.0);
+  const std::string planner = plannerOf(ego, planners::Role::kEgo);
+  if (!planner.empty()) options.ego_planner = planner;
+  chooseCbvs(scenario, ego, options);
+  return options;
+}
+
+std::shared_ptr<const storyboard::Play> readPlay(const StoryboardOptions& options,
+                                                 const map::ImportedNetwork& import,
+                                                 const map::LaneGraph& graph) {
+  if (options.file.empty()) return nullptr;
+  Scenario scenario = storyboard::readScenario(options.file, options.ignore_unsupported);
+  const std::string ego = egoOf(scenario).name;
+  const std::string text = core::readFile(import.source, "network");
+  std::optional<map::OpenDriveRoads> roads;
+  if (text.find("<OpenDRIVE") != std::string::npos) roads.emplace(text, import.source.string());
+  return std::make_shared<const storyboard::Play>(std::move(scenario), graph, std::move(roads),
+                                                  ego);
+}
+
+map::Route egoRouteOf(const storyboard::Play& play) {
+  const Entity& ego = *play.scenario.find(play.ego);
+  const storyboard::Places::PoseOf nobody = [&](const std::string& entity) -> storyboard::MapPose {
+    throw InputError("the ego's place refers to '" + entity + "', which is not placed before it");
+  };
+  std::optional<storyboard::MapPose> start;
+  std::vector<Eigen::Vector3d> points;
+  for (const storyboard::InitAction& init : play.scenario.init) {
+    if (init.entity != play.ego) continue;
+    if (const auto* to = std::get_if<storyboard::TeleportAction>(&init.action.what)) {
+      start = play.places.resolve(to->to, nobody);
+      start->pose.position = start->pose.toMap(ego.center);
+    }
+    const auto* const route = std::get_if<storyboard::RouteAction>(&init.action.what);
+    if (route == nullptr) continue;
+    for (const storyboard::Position& waypoint : route->waypoints) {
+      const storyboard::MapPose place = play.places.resolve(waypoint, nobody);
+      points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
+    }
+  }
+  if (!start) throw InputError(ego.source.text() + ": the ego has no <TeleportAction> in <Init>");
+  if (!points.empty()) return play.places.routeThrough(*start, std::move(points));
+  const auto route = play.places.routeFrom(*start);
+  if (route) return *route;
+  throw InputError(ego.source.text() + ": the ego starts on no lane of its heading");
+}
+
+}  // namespace cdiff::session

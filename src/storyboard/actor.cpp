@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "storyboard/actor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+
+namespace cdiff::storyboard {
+namespace {
+
+/// Ends what was performed before.
+void replace(std::shared_ptr<Performance>& present, const std::shared_ptr<Performance>& next) {
+  if (present) present->over = true;
+  present = next;
+}
+
+void finish(std::shared_ptr<Performance>& performing) {
+  if (performing) performing->over = true;
+  performing.reset();
+}
+
+/// How long a change of `difference` takes, in the dimension of the dynamics.
+double extentOf(const Dynamics& dynamics, double difference) {
+  if (dynamics.shape == Dynamics::Shape::kStep) return 0.0;
+  if (dynamics.dimension != Dynamics::Dimension::kRate) return dynamics.value;
+  return dynamics.value > 0.0 ? std::abs(difference) / dynamics.value : 0.0;
+}
+
+}  // namespace
+
+double Transition::value() const {
+  if (over() || shape_ == Dynamics::Shape::kStep) return to_;
+  double share = std::clamp(progress_ / extent_, 0.0, 1.0);
+  if (shape_ == Dynamics::Shape::kCubic) share = share * share * (3.0 - 2.0 * share);
+  if (shape_ == Dynamics::Shape::kSinusoidal) share = 0.5 * (1.0 - std::cos(core::kPi * share));
+  return from_ + share * (to_ - from_);
+}
+
+void Actor::takeRoute(std::shared_ptr<const map::Route> route) {
+  route_ = std::move(route);
+  if (!route_) return;
+  const geometry::Projection here = route_->path().project(reference_.pose.position);
+  arc_length_ = here.arc_length;
+  offset_ = route_->path()
+                .extendedPoseAt(arc_length_)
+                .toBody(reference_.pose.position)
+                .y();
+}
+
+void Actor::place(const MapPose& place) {
+  if (trajectory_) finish(trajectory_->performing);
+  trajectory_.reset();
+  offset_change_.reset();
+  finish(lateral_);
+  reference_ = place;
+  const auto route = places_.routeFrom(place);
+  takeRoute(route ? std::make_shared<const map::Route>(*route) : nullptr);
+}
+
+void Actor::resume(const traffic::VehicleState& state) {
+  const geometry::Pose2d pose = state.pose();
+  speed_ = state.speed;
+  place({{pose.toMap(-entity_.center), pose.heading}, state.elevation});
+}
+
+void Actor::setSpeed(const Dynamics& dynamics, double speed, const Performing& performing) {
+  replace(longitudinal_, performing);
+  wanted_speed_ = nullptr;
+  double extent = extentOf(dynamics, speed - speed_);
+  if (dynamics.dimension == Dynamics::Dimension::kDistance)
+    extent = 2.0 * extent / std::max(0.1, speed + speed_);
+  speed_change_ = Transition(speed_, speed, dynamics.shape, extent, false);
+  if (!speed_change_->over()) return;
+  speed_ = speed;
+  speed_change_.reset();
+  finish(longitudinal_);
+}
+
+void Actor::adaptSpeed(std::function<double()> wanted, double acceleration, bool continuous,
+                       const Performing& performing) {
+  replace(longitudinal_, performing);
+  speed_change_.reset();
+  wanted_speed_ = std::move(wanted);
+  adapting_acceleration_ = acceleration;
+  adapting_always_ = continuous;
+}
+
+void Actor::startOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
+  replace(lateral_, performing);
+  const bool by_distance = dynamics.dimension == Dynamics::Dimension::kDistance;
+  offset_change_ = Transition(offset_, offset, dynamics.shape,
+                              extentOf(dynamics, offset - offset_), by_distance);
+}
+
+void Actor::changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle, double offset,
+                       const Performing& performing) {
+  // A lane of the same direction becomes the route; beside others one drives off the route.
+  const MapPose target{{lane_middle, reference_.pose.heading}, reference_.elevation};
+  const auto route = places_.routeFrom(target);
+  if (route) takeRoute(std::make_shared<const map::Route>(*route));
+  const double middle =
+      route_ ? route_->path().project(lane_middle).lateral_offset : 0.0;
+  startOffset(dynamics, middle + offset, performing);
+}
+
+void Actor::setOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
+  startOffset(dynamics, offset, performing);
+}
+
+void Actor::setRoute(map::Route route) {
+  takeRoute(std::make_shared<const map::Route>(std::move(route)));
+}
+
+void Actor::follow(std::vector<MapPose> places, std::vector<double> times,
+                   const Performing& performing) {
+  replace(lateral_, performing);
+  if (!times.empty()) replace(longitudinal_, nullptr);
+  if (!times.empty()) speed_change_.reset();
+  offset_change_.reset();
+  std::vector<Eigen::Vector3d> points;
+  for (const MapPose& place : places)
+    points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
+  const double length = times.empty() ? 1.0 : 0.0;
+  trajectory_ = Trajectory{std::move(places), std::move(times), {}, 0.0, performing};
+  if (length > 0.0) trajectory_->line = geometry::Polyline(points);
+}
+
+void Actor::changeSpeed(double step) {
+  if (longitudinal_ && longitudinal_->stopped) {
+    speed_change_.reset();
+    wanted_speed_ = nullptr;
+    finish(longitudinal_);
+  }
+  if (speed_change_) {
+    speed_change_->advance(step, 0.0);
+    speed_ = std::max(0.0, speed_change_->value());
+    if (!speed_change_->over()) return;
+    speed_change_.reset();
+    finish(longitudinal_);
+  } else if (wanted_speed_) {
+    constexpr double kReached = 0.01;  // [m/s]
+    const double most = adapting_acceleration_ * step;
+    const double difference = wanted_speed_() - speed_;
+    speed_ = std::max(0.0, speed_ + std::clamp(difference, -most, most));
+    if (adapting_always_ || std::abs(difference) > kReached) return;
+    wanted_speed_ = nullptr;
+    finish(longitudinal_);
+  }
+}
+
+void Actor::advanceStraight(double meters) {
+  reference_.pose.position += meters * geometry::direction(reference_.pose.heading);
+}
+
+void Actor::advanceOnLanes(double meters, double step) {
+  const geometry::Polyline& path = route_->path();
+  const double before = offset_;
+  if (arc_length_ + meters >= path.length()) {  // where the network ends one stops
+    meters = path.length() - arc_length_;
+    speed_ = 0.0;
+  }
+  if (lateral_ && lateral_->stopped) {
+    offset_change_.reset();
+    finish(lateral_);
+  }
+  arc_length_ += meters;
+  if (offset_change_) {
+    offset_change_->advance(step, meters);
+    offset_ = offset_change_->value();
+    if (offset_change_->over()) {
+      offset_change_.reset();
+      finish(lateral_);
+    }
+  }
+  if (meters <= 0.0 && offset_ == before) return;
+  const geometry::Pose2d on_path = path.extendedPoseAt(arc_length_);
+  const double turned = meters > 0.0 ? std::atan2(offset_ - before, meters) : 0.0;
+  reference_.pose = {on_path.toMap({0.0, offset_}), core::wrapAngle(on_path.heading + turned)};
+  reference_.elevation = path.pointAt(arc_length_).z();
+}
+
+void Actor::endTrajectory() {
+  trajectory_.reset();
+  finish(lateral_);
+  const auto route = places_.routeFrom(reference_);
+  takeRoute(route ? std::make_shared<const map::Route>(*route) : nullptr);
+}
+
+void Actor::advanceOnTrajectory(double time, double step, double meters) {
+  Trajectory& course = *trajectory_;
+  if (lateral_ && lateral_->stopped) return endTrajectory();
+  if (course.times.empty()) {
+    course.driven += meters;
+    const geometry::Pose2d pose = course.line.extendedPoseAt(course.driven);
+    reference_ = {pose, course.line.pointAt(course.driven).z()};
+    if (course.driven >= course.line.length()) endTrajectory();
+    return;
+  }
+  constexpr double kTolerance = 1e-9;  // [s]
+  const auto after =
+      std::upper_bound(course.times.begin(), course.times.end(), time + kTolerance);
+  const auto next = static_cast<std::size_t>(after - course.times.begin());
+  const Eigen::Vector2d before = reference_.pose.position;
+  if (next == 0 || next == course.times.size()) {
+    reference_ = next == 0 ? course.places.front() : course.places.back();
+  } else {
+    const MapPose& from = course.places[next - 1];
+    const MapPose& to = course.places[next];
+    const double share = std::clamp((time - course.times[next - 1]) /
+                                        (course.times[next] - course.times[next - 1]),
+                                    0.0, 1.0);
+    const double turned = core::angleDifference(to.pose.heading, from.pose.heading);
+    reference_.pose = {from.pose.position + share * (to.pose.position - from.pose.position),
+                       core::wrapAngle(from.pose.heading + share * turned)};
+    reference_.elevation = from.elevation + share * (to.elevation - from.elevation);
+  }
+  speed_ = (reference_.pose.position - before).norm() / step;
+  if (next == course.times.size()) endTrajectory();
+}
+
+void Actor::advance(double time, double step) {
+  const double before = speed_;
+  changeSpeed(step);
+  const double meters = 0.5 * (before + speed_) * step;
+  if (trajectory_) {
+    advanceOnTrajectory(time, step, meters);
+  } else if (route_) {
+    advanceOnLanes(meters, step);
+  } else {
+    advanceStraight(meters);
+  }
+  acceleration_ = (speed_ - before) / step;
+}
+
+traffic::VehicleState Actor::state() const {
+  traffic::VehicleState state;
+  state.position = reference_.pose.toMap(entity_.center);
+  state.elevation = reference_.elevation;
+  state.heading = reference_.pose.heading;
+  state.speed = speed_;
+  return state;
+}
+
+}  // namespace cdiff::storyboard

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "storyboard/places.h"
+#include "storyboard/storyboard.h"
+
+namespace cdiff::storyboard {
+
+/// A value on its way to a target, over time [s] or distance driven [m].
+class Transition {
+ public:
+  /// `extent`: how long it takes in its dimension; 0 is at once.
+  Transition(double from, double to, Dynamics::Shape shape, double extent, bool by_distance)
+      : from_(from), to_(to), shape_(shape), extent_(extent), by_distance_(by_distance) {}
+
+  void advance(double seconds, double meters) { progress_ += by_distance_ ? meters : seconds; }
+  double value() const;
+  bool over() const { return progress_ >= extent_ - 1e-9; }
+
+ private:
+  double from_;
+  double to_;
+  Dynamics::Shape shape_;
+  double extent_;
+  bool by_distance_;
+  double progress_ = 0.0;
+};
+
+/// The motion of another entity that an actor adapts to: its speed [m/s], and the gap to it [m]
+/// where it is one.
+struct Followed {
+  double speed = 0.0;
+  double gap = 0.0;  ///< ahead of the actor
+};
+
+/// An entity that the storyboard moves (map frame, SI units): its reference point drives along the
+/// lanes at its speed and beside their middle, or along a trajectory. It obeys no dynamics of
+/// vehicles. Off every lane it goes straight on.
+class Actor {
+ public:
+  using Performing = std::shared_ptr<Performance>;
+  using FollowedNow = std::function<Followed()>;
+
+  /// References must outlive the object.
+  Actor(const Entity& entity, const Places& places) : entity_(entity), places_(places) {}
+
+  /// Puts its reference point somewhere; it goes on along the lane there.
+  void place(const MapPose& place);
+  /// Takes it from where somebody else drove it.
+  void resume(const traffic::VehicleState& state);
+  /// Each of these replaces the action before it in the same domain.
+  void setSpeed(const Dynamics& dynamics, double speed, const Performing& performing);
+  /// Keeps the speed that `wanted` says, changed by at most `acceleration` [m/s^2]; over at once
+  /// where it is not continuous and reached.
+  void adaptSpeed(std::function<double()> wanted, double acceleration, bool continuous,
+                  const Performing& performing);
+  void changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle, double offset,
+                  const Performing& performing);
+  void setOffset(const Dynamics& dynamics, double offset, const Performing& performing);
+  void setRoute(map::Route route);
+  /// `times` [s] of simulated time, one for each place, or none.
+  void follow(std::vector<MapPose> places, std::vector<double> times,
+              const Performing& performing);
+
+  /// Moves on to `time`, `step` seconds later.
+  void advance(double time, double step);
+
+  const Entity& entity() const { return entity_; }
+  const MapPose& reference() const { return reference_; }
+  /// Of the box's center.
+  traffic::VehicleState state() const;
+  double speed() const { return speed_; }
+  double acceleration() const { return acceleration_; }
+  /// nullptr off every lane.
+  const map::Route* route() const { return route_.get(); }
+
+ private:
+  struct Trajectory {
+    std::vector<MapPose> places;
+    std::vector<double> times;
+    geometry::Polyline line;
+    double driven = 0.0;
+    Performing performing;
+  };
+  void takeRoute(std::shared_ptr<const map::Route> route);
+  void startOffset(const Dynamics& dynamics, double offset, const Performing& performing);
+  void changeSpeed(double step);
+  void advanceOnLanes(double meters, double step);
+  void advanceStraight(double meters);
+  void advanceOnTrajectory(double time, double step, double meters);
+  void endTrajectory();
+
+  const Entity& entity_;
+  const Places& places_;
+  MapPose reference_;
+  double speed_ = 0.0;
+  double acceleration_ = 0.0;
+  std::shared_ptr<const map::Route> route_;
+  double arc_length_ = 0.0;
+  double offset_ = 0.0;  ///< to the left of the route [m]
+  std::optional<Transition> speed_change_;
+  std::function<double()> wanted_speed_;
+  double adapting_acceleration_ = 0.0;
+  bool adapting_always_ = false;
+  std::optional<Transition> offset_change_;
+  std::optional<Trajectory> trajectory_;
+  Performing longitudinal_;
+  Performing lateral_;
+};
+
+}  // namespace cdiff::storyboard

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "map/lane_graph.h"
+#include "map/opendrive_roads.h"
+#include "storyboard/scenario.h"
+
+namespace cdiff::storyboard {
+
+/// A place of a reference point in the map frame [m, rad].
+struct MapPose {
+  geometry::Pose2d pose;
+  double elevation = 0.0;  ///< [m]
+};
+
+/// The road network of a scenario: finds what positions mean in the map frame.
+class Places {
+ public:
+  using PoseOf = std::function<MapPose(const std::string& entity)>;
+
+  /// `graph` must outlive the object. `roads`: of the OpenDRIVE file; nullopt for a network that
+  /// is none, where lane and road positions are refused.
+  Places(const map::LaneGraph& graph, std::optional<map::OpenDriveRoads> roads)
+      : graph_(graph), roads_(std::move(roads)) {}
+
+  /// The place that a position means; `pose_of` has the places of entities. Without a heading of
+  /// its own a position on a lane has that of the lane. Throws InputError with file and line for a
+  /// road, a lane or a place that is not there.
+  MapPose resolve(const Position& position, const PoseOf& pose_of) const;
+  /// The middle of the lane that a lane change leads to, abreast of `self`. Throws InputError as
+  /// above; `source` is the action.
+  Eigen::Vector2d laneTarget(const LaneChangeAction& change, const MapPose& self,
+                             const MapPose& reference, const Source& source) const;
+  /// The route along lanes from a place on, straight on where it can; nullopt off every lane of
+  /// about that heading.
+  std::optional<map::Route> routeFrom(const MapPose& place) const;
+  /// The route from a place through points in the map frame. Throws InputError.
+  map::Route routeThrough(const MapPose& place, std::vector<Eigen::Vector3d> points) const;
+  /// Heading of the nearest lane, or that of the place off every lane.
+  double laneHeading(const MapPose& place) const;
+
+ private:
+  const map::OpenDriveRoads& roads(const std::string& what) const;
+  MapPose onRoad(const std::string& road, double s, double t) const;
+  MapPose lanePose(const std::string& road, int lane, double s, double offset) const;
+  MapPose withoutOwnHeading(const Position& position, const PoseOf& pose_of) const;
+  MapPose relativeToLane(const Position& position, const MapPose& reference) const;
+  MapPose relativeToRoad(const Position& position, const MapPose& reference) const;
+  map::RoadPlace roadPlace(const MapPose& place) const;
+  std::optional<map::LanePosition> laneAt(const MapPose& place) const;
+
+  const map::LaneGraph& graph_;
+  std::optional<map::OpenDriveRoads> roads_;
+};
+
+}  // namespace cdiff::storyboard

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "storyboard/traffic_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::storyboard {
+namespace {
+
+using Measure = EntityCondition::Measure;
+using Along = EntityCondition::Along;
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+template <class Value>
+bool compare(Rule rule, const Value& left, const Value& right) {
+  switch (rule) {
+    case Rule::kGreater:
+      return left > right;
+    case Rule::kGreaterOrEqual:
+      return left >= right;
+    case Rule::kLess:
+      return left < right;
+    case Rule::kLessOrEqual:
+      return left <= right;
+    case Rule::kEqual:
+      return left == right;
+    case Rule::kNotEqual:
+      break;
+  }
+  return left != right;
+}
+
+/// With numbers that differ by less than a rounding counted as equal.
+bool compareNumbers(Rule rule, double left, double right) {
+  constexpr double kTolerance = 1e-6;
+  return compare(rule, std::abs(left - right) < kTolerance ? right : left, right);
+}
+
+bool compareTexts(Rule rule, const std::string& left, const std::string& right) {
+  const auto first = core::parseNumber(left);
+  const auto second = core::parseNumber(right);
+  return first && second ? compareNumbers(rule, *first, *second) : compare(rule, left, right);
+}
+
+}  // namespace
+
+TrafficStage::TrafficStage(const Scenario& scenario, const Places& places,
+                           std::set<std::string> planned)
+    : scenario_(scenario),
+      places_(places),
+      pose_of_([this](const std::string& entity) { return poseOf(entity); }),
+      planned_(std::move(planned)),
+      parameters_(scenario.parameters) {
+  for (const Entity& entity : scenario.entities)
+    actors_[entity.name].actor = std::make_unique<Actor>(entity, places);
+}
+
+void TrafficStage::begin() {
+  for (const InitAction& init : scenario_.init) {
+    if (init.entity.empty()) {
+      performGlobal(init.action);
+    } else {
+      begin(init.action, {init.entity}, 0.0);
+    }
+  }
+}
+
+// What is measured.
+
+geometry::OrientedBox TrafficStage::boxOf(const std::string& entity) const {
+  const Member& known = member(entity);
+  const traffic::VehicleDimensions& size = known.actor->entity().dimensions;
+  return {known.state.position, known.state.heading, size.length, size.width};
+}
+
+const map::Route* TrafficStage::routeOf(const std::string& entity) const {
+  const Member& known = member(entity);
+  return planned_.count(entity) != 0 ? known.planned_route : known.actor->route();
+}
+
+Eigen::Vector2d TrafficStage::velocityOf(const std::string& entity) const {
+  return member(entity).state.velocity();
+}
+
+/// Distance along or across the lanes or the entity's own axes, never negative.
+double TrafficStage::alongDistance(const EntityCondition& condition, const std::string& entity,
+                                   const Eigen::Vector2d& target) const {
+  const MapPose& own = member(entity).reference;
+  const map::Route* const route = condition.lane_frame ? routeOf(entity) : nullptr;
+  Eigen::Vector2d difference = own.pose.toBody(target);
+  if (route != nullptr) {
+    const auto here = route->path().project(own.pose.position);
+    const auto there = route->path().project(target);
+    difference = {there.arc_length - here.arc_length, there.lateral_offset - here.lateral_offset};
+  }
+  const bool lateral = condition.along == Along::kLateral;
+  const double found = std::abs(lateral ? difference.y() : difference.x());
+  if (!condition.freespace || condition.other.empty()) return found;
+  const Eigen::Vector2d forward = geometry::direction(own.pose.heading);
+  const Eigen::Vector2d axis = lateral ? geometry::leftNormal(forward) : forward;
+  const double centers = std::abs(
+      axis.dot(member(condition.other).state.position - member(entity).state.position));
+  const double extents = geometry::halfExtent(boxOf(entity), axis) +
+                         geometry::halfExtent(boxOf(condition.other), axis);
+  const double moved = std::abs(axis.dot(target - own.pose.position));
+  return std::max(0.0, found + centers - moved - extents);
+}
+
+double TrafficStage::distance(const EntityCondition& condition, const std::string& entity) const {
+  const bool to_entity = !condition.other.empty();
+  const Eigen::Vector2d target = to_entity
+                                     ? member(condition.other).reference.pose.position
+                                     : places_.resolve(*condition.place, pose_of_).pose.position;
+  if (condition.along != Along::kStraight) return alongDistance(condition, entity, target);
+  if (to_entity && condition.freespace)
+    return geometry::distance(boxOf(entity), boxOf(condition.other));
+  return (target - member(entity).reference.pose.position).norm();
+}
+
+/// Distance over the speed at which it shrinks [s]; infinite where it does not.
+double TrafficStage::timeToCollision(const EntityCondition& condition,
+                                     const std::string& entity) const {
+  const bool to_entity = !condition.other.empty();
+  const Eigen::Vector2d target = to_entity
+                                     ? member(condition.other).state.position
+                                     : places_.resolve(*condition.place, pose_of_).pose.position;
+  const Eigen::Vector2d toward = (target - member(entity).state.position).normalized();
+  Eigen::Vector2d relative = velocityOf(entity);
+  if (to_entity) relative -= velocityOf(condition.other);
+  const double closing = relative.dot(toward);
+  return closing > 1e-3 ? distance(condition, entity) / closing : kNever;
+}
+
+bool TrafficStage::collides(const EntityCondition& condition, const std::string& entity) const {
+  for (const std::string& other : present_) {
+    if (other == entity || (!condition.other.empty() && other != condition.other)) continue;
+    if (traffic::onDifferentLevels(member(entity).state.elevation,
+                                   member(other).state.elevation))
+      continue;
+    if (geometry::overlap(boxOf(entity), boxOf(other))) return true;
+  }
+  return false;
+}
+
+bool TrafficStage::measured(const EntityCondition& condition, const std::string& entity) const {
+  if (!present(entity)) return false;
+  if (!condition.other.empty() && !present(condition.other)) return false;
+  const Member& own = member(entity);
+  const auto holds = [&](double value) {
+    return compareNumbers(condition.rule, value, condition.value);
+  };
+  switch (condition.measure) {
+    case Measure::kSpeed:
+      return holds(own.state.speed);
+    case Measure::kRelativeSpeed:
+      return holds(own.state.speed - member(condition.other).state.speed);
+    case Measure::kAcceleration:
+      return holds(std::abs(own.acceleration));
+    case Measure::kStandStill:
+      return holds(own.standing);
+    case Measure::kTraveledDistance:
+      return holds(own.traveled);
+    case Measure::kReachPosition:
+    case Measure::kDistance:
+      return holds(distance(condition, entity));
+    case Measure::kHeadway:
+      return own.state.speed > 1e-3 && holds(distance(condition, entity) / own.state.speed);
+    case Measure::kTimeToCollision:
+      return holds(timeToCollision(condition, entity));
+    case Measure::kCollision:
+      break;
+  }
+  return collides(condition, entity);
+}
+
+bool TrafficStage::holds(const Condition& condition, double time) {
+  if (const auto* clock = std::get_if<TimeCondition>(&condition.what))
+    return compareNumbers(clock->rule, time, clock->value);
+  if (const auto* parameter = std::get_if<ParameterCondition>(&condition.what)) {
+    const auto found = parameters_.find(parameter->name);
+    return found != parameters_.end() &&
+           compareTexts(parameter->rule, found->second, parameter->value);
+  }
+  const auto* const entities = std::get_if<EntityCondition>(&condition.what);
+  if (entities == nullptr || entities->entities.empty()) return false;
+  const auto holds_of = [&](const std::string& entity) { return measured(*entities, entity); };
+  const auto& list = entities->entities;
+  return entities->all ? std::all_of(list.begin(), list.end(), holds_of)
+                       : std::any_of(list.begin(), list.end(), holds_of);
+}
+
+// What is performed.
+
+void TrafficStage::place(const std::string& entity, const Position& position) {
+  Member& own = actors_.at(entity);
+  own.actor->place(places_.resolve(position, pose_of_));
+  own.reference = own.actor->reference();
+  own.state = own.actor->state();
+  present_.insert(entity);
+}
+
+void TrafficStage::change(const ParameterAction& action) {
+  std::string& value = parameters_[action.name];
+  const auto old = core::parseNumber(value);
+  const auto operand = core::parseNumber(action.value);
+  if (action.change == ParameterAction::Change::kSet || !old || !operand) {
+    value = action.value;
+  } else {
+    const bool add = action.change == ParameterAction::Change::kAdd;
+    value = core::formatNumber(add ? *old + *operand : *old * *operand);
+  }
+}
+
+void TrafficStage::performGlobal(const Action& action) {
+  if (const auto* parameter = std::get_if<ParameterAction>(&action.what)) change(*parameter);
+  const auto* const entity = std::get_if<EntityAction>(&action.what);
+  if (entity == nullptr || planned_.count(entity->entity) != 0) return;
+  if (entity->place) {
+    place(entity->entity, *entity->place);
+  } else {
+    remove(entity->entity);
+  }
+}
+
+void TrafficStage::perform(const SpeedAction& action, Actor& actor,
+                           const Actor::Performing& performing) {
+  if (action.entity.empty()) return actor.setSpeed(action.dynamics, action.value, performing);
+  const auto wanted = [this, action] {
+    const double other = member(action.entity).state.speed;
+    return std::max(0.0, action.factor ? other * action.value : other + action.value);
+  };
+  if (!action.continuous) return actor.setSpeed(action.dynamics, wanted(), performing);
+  constexpr double kUsual = 10.0;  // [m/s^2]
+  const bool rate = action.dynamics.dimension == Dynamics::Dimension::kRate;
+  actor.adaptSpeed(wanted, rate ? action.dynamics.value : kUsual, true, performing);
+}
+
+void TrafficStage::perform(const DistanceAction& action, Actor& actor,
+                           const Actor::Performing& performing) {
+  constexpr double kGain = 0.4;  // [1/s]
+  EntityCondition gap;
+  gap.other = action.entity;
+  gap.freespace = action.freespace;
+  gap.along = Along::kLongitudinal;
+  const std::string self = actor.entity().name;
+  const auto wanted = [this, gap, action, self] {
+    const Member& own = member(self);
+    const Member& other = member(action.entity);
+    const bool behind = own.reference.pose.toBody(other.reference.pose.position).x() > 0.0;
+    const double target = action.time_gap ? action.value * own.state.speed : action.value;
+    const double excess = (distance(gap, self) - target) * (behind ? 1.0 : -1.0);
+    return std::max(0.0, other.state.speed + kGain * excess);
+  };
+  actor.adaptSpeed(wanted, action.acceleration, action.continuous, performing);
+}
+
+void TrafficStage::perform(const LaneChangeAction& action, const Source& source, Actor& actor,
+                           const Actor::Performing& performing) {
+  const MapPose reference = action.entity.empty() ? actor.reference() : poseOf(action.entity);
+  const Eigen::Vector2d middle =
+      places_.laneTarget(action, actor.reference(), reference, source);
+  actor.changeLane(action.dynamics, middle, action.offset, performing);
+}
+
+void TrafficStage::perform(const FollowTrajectoryAction& action, double time, Actor& actor,
+                           const Actor::Performing& performing) {
+  std::vector<MapPose> places;
+  std::vector<double> times;
+  for (const TrajectoryVertex& vertex : action.vertices) {
+    places.push_back(places_.resolve(vertex.position, pose_of_));
+    const double from = action.absolute ? 0.0 : time;
+    if (action.timed) times.push_back(from + vertex.time * action.scale + action.offset);
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (action.vertices[i].position.oriented) continue;
+    const std::size_t first = i + 1 < places.size() ? i : i - 1;
+    const Eigen::Vector2d ahead =
+        places[first + 1].pose.position - places[first].pose.position;
+    if (ahead.norm() > 1e-6) places[i].pose.heading = std::atan2(ahead.y(), ahead.x());
+  }
+  actor.follow(std::move(places), std::move(times), performing);
+}
+
+void TrafficStage::perform(const RouteAction& action, const Source& source, Actor& actor) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Position& waypoint : action.waypoints) {
+    const MapPose place = places_.resolve(waypoint, pose_of_);
+    points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
+  }
+  try {
+    actor.setRoute(places_.routeThrough(actor.reference(), std::move(points)));
+  } catch (const core::InputError& error) {
+    throw core::InputError(source.text() + ": " + error.what());
+  }
+}
+
+void TrafficStage::perform(const Action& action, const std::string& entity, double time,
+                           const Actor::Performing& performing) {
+  const auto& what = action.what;
+  if (const auto* teleport = std::get_if<TeleportAction>(&what)) place(entity, teleport->to);
+  if (!present(entity)) {
+    performing->over = true;
+    return;
+  }
+  Actor& actor = *actors_.at(entity).actor;
+  if (const auto* speed = std::get_if<SpeedAction>(&what)) return perform(*speed, actor, performing);
+  if (const auto* lane = std::get_if<LaneChangeAction>(&what))
+    return perform(*lane, action.source, actor, performing);
+  if (const auto* beside = std::get_if<LaneOffsetAction>(&what))
+    return actor.setOffset(beside->dynamics, beside->value, performing);
+  if (const auto* course = std::get_if<FollowTrajectoryAction>(&what))
+    return perform(*course, time, actor, performing);
+  if (const auto* gap = std::get_if<DistanceAction>(&what))
+    return perform(*gap, actor, performing);
+  if (const auto* route = std::get_if<RouteAction>(&what)) perform(*route, action.source, actor);
+  performing->over = true;
+}
+
+std::vector<std::shared_ptr<Performance>> TrafficStage::begin(
+    const Action& action, const std::vector<std::string>& actors, double time) {
+  const bool global = std::holds_alternative<EntityAction>(action.what) ||
+                      std::holds_alternative<ParameterAction>(action.what) ||
+                      std::holds_alternative<NoAction>(action.what);
+  if (global) performGlobal(action);
+  if (global) return {};
+  std::vector<std::shared_ptr<Performance>> performances;
+  for (const std::string& entity : actors) {
+    performances.push_back(std::make_shared<Performance>());
+    if (planned_.count(entity) != 0) {
+      performances.back()->over = true;
+    } else {
+      perform(action, entity, time, performances.back());
+      Member& own = actors_.at(entity);
+      own.reference = own.actor->reference();
+      own.state = own.actor->state();
+    }
+  }
+  return performances;
+}
+
+// What moves.
+
+void TrafficStage::measure(Member& known, const traffic::VehicleState& before,
+                           double step) const {
+  known.traveled += (known.state.position - before.position).norm();
+  known.standing = known.state.speed < 0.05 ? known.standing + step : 0.0;
+}
+
+void TrafficStage::observe(const std::string& entity, const traffic::VehicleState& state,
+                           const map::Route* route) {
+  Member& known = actors_.at(entity);
+  const geometry::Pose2d pose = state.pose();
+  known.state = state;
+  known.reference = {{pose.toMap(-known.actor->entity().center), pose.heading}, state.elevation};
+  known.planned_route = route;
+  present_.insert(entity);
+}
+
+void TrafficStage::setPlanned(const std::string& entity, bool planned) {
+  if (planned) {
+    planned_.insert(entity);
+  } else if (planned_.erase(entity) > 0) {
+    actors_.at(entity).actor->resume(member(entity).state);
+  }
+}
+
+void TrafficStage::advance(double time, double step) {
+  for (const std::string& entity : present_) {
+    if (planned_.count(entity) != 0) continue;
+    Member& known = actors_.at(entity);
+    const traffic::VehicleState before = known.state;
+    known.actor->advance(time, step);
+    known.state = known.actor->state();
+    known.reference = known.actor->reference();
+    known.acceleration = known.actor->acceleration();
+    measure(known, before, step);
+  }
+}
+
+std::vector<std::string> TrafficStage::moved() const {
+  std::vector<std::string> names;
+  for (const std::string& entity : present_)
+    if (planned_.count(entity) == 0) names.push_back(entity);
+  return names;
+}
+
+}  // namespace cdiff::storyboard

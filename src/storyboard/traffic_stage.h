@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "storyboard/actor.h"
+#include "storyboard/places.h"
+#include "storyboard/storyboard.h"
+
+namespace cdiff::storyboard {
+
+/// The entities of a scenario in a session: those that the storyboard moves, and those that
+/// planners drive, whose states it is told. Answers the conditions of a storyboard and performs its
+/// actions (map frame, SI units). Actions on entities that planners drive do nothing and are over
+/// at once.
+class TrafficStage : public Stage {
+ public:
+  /// References must outlive the object. `planned`: entities that planners drive from the start.
+  TrafficStage(const Scenario& scenario, const Places& places, std::set<std::string> planned);
+
+  /// The actions of the storyboard's beginning.
+  void begin();
+  bool holds(const Condition& condition, double time) override;
+  std::vector<std::shared_ptr<Performance>> begin(const Action& action,
+                                                  const std::vector<std::string>& actors,
+                                                  double time) override;
+
+  /// Says where a planner has its entity, given by the center of its box, and along which route it
+  /// drives (nullptr: none; must live until the next call).
+  void observe(const std::string& entity, const traffic::VehicleState& state,
+               const map::Route* route);
+  /// A planner drives the entity from now on, or no more.
+  void setPlanned(const std::string& entity, bool planned);
+  /// Moves what the storyboard moves to `time`, and measures what conditions need.
+  void advance(double time, double step);
+  void remove(const std::string& entity) { present_.erase(entity); }
+
+  /// Names of the entities that are there and that the storyboard moves.
+  std::vector<std::string> moved() const;
+  const Actor& actor(const std::string& entity) const { return *actors_.at(entity).actor; }
+  /// Whether the entity is in the simulation.
+  bool present(const std::string& entity) const { return present_.count(entity) != 0; }
+
+ private:
+  /// An entity, and what is measured of it.
+  struct Member {
+    std::unique_ptr<Actor> actor;
+    traffic::VehicleState state;
+    MapPose reference;
+    double acceleration = 0.0;
+    double traveled = 0.0;  ///< [m]
+    double standing = 0.0;  ///< [s]
+    const map::Route* planned_route = nullptr;
+  };
+  const Member& member(const std::string& entity) const { return actors_.at(entity); }
+  MapPose poseOf(const std::string& entity) const { return member(entity).reference; }
+  geometry::OrientedBox boxOf(const std::string& entity) const;
+  const map::Route* routeOf(const std::string& entity) const;
+  bool measured(const EntityCondition& condition, const std::string& entity) const;
+  double distance(const EntityCondition& condition, const std::string& entity) const;
+  double alongDistance(const EntityCondition& condition, const std::string& entity,
+                       const Eigen::Vector2d& target) const;
+  double timeToCollision(const EntityCondition& condition, const std::string& entity) const;
+  Eigen::Vector2d velocityOf(const std::string& entity) const;
+  bool collides(const EntityCondition& condition, const std::string& entity) const;
+  void perform(const Action& action, const std::string& entity, double time,
+               const std::shared_ptr<Performance>& performing);
+  void perform(const SpeedAction& action, Actor& actor, const Actor::Performing& performing);
+  void perform(const DistanceAction& action, Actor& actor, const Actor::Performing& performing);
+  void perform(const LaneChangeAction& action, const Source& source, Actor& actor,
+               const Actor::Performing& performing);
+  void perform(const FollowTrajectoryAction& action, double time, Actor& actor,
+               const Actor::Performing& performing);
+  void perform(const RouteAction& action, const Source& source, Actor& actor);
+  void performGlobal(const Action& action);
+  void place(const std::string& entity, const Position& position);
+  void change(const ParameterAction& action);
+  void measure(Member& member, const traffic::VehicleState& before, double step) const;
+
+  const Scenario& scenario_;
+  const Places& places_;
+  Places::PoseOf pose_of_;
+  std::map<std::string, Member> actors_;
+  std::set<std::string> planned_;
+  std::set<std::string> present_;
+  std::map<std::string, std::string> parameters_;
+};
+
+}  // namespace cdiff::storyboard
