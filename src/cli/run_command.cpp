@@ -395,7 +395,8 @@ int demo(const fs::path& folder) {
 CLI::App* addRunOptions(CLI::App& program, RunArguments& arguments) {
   CLI::App* command = program.add_subcommand("run", "Run one session and write its result folder");
   session::SessionRequest& request = arguments.request;
-  command->add_option("scenario", request.scenario, "Shipped scenario, scenario file, or OpenSCENARIO file (*.xosc)");
+  command->add_option("scenario", request.scenario,
+                      "Shipped scenario, scenario file, or OpenSCENARIO file (*.xosc)");
   command->add_option("--bench2drive", request.bench2drive,
                       "Bench2Drive route file, instead of a scenario");
   command->add_option("--route", request.route, "Id of a route in that file");

@@ -17,6 +17,7 @@
 #include "session/session_control.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
+#include "storyboard/scenario_reader.h"
 #include "suite/seal.h"
 
 namespace cdiff::cli {
@@ -26,9 +27,10 @@ struct ValidateArguments {
   std::vector<std::string> scenarios;
   std::vector<std::string> set;  ///< "key=value" each
   bool print = false;
-  std::string group;  ///< print this group alone
-  bool fast = false;  ///< do not start SUMO
-  bool list = false;  ///< list planners instead
+  std::string group;      ///< print this group alone
+  bool fast = false;      ///< do not start SUMO
+  bool list = false;      ///< list planners instead
+  bool elements = false;  ///< list elements of OpenSCENARIO instead
 };
 
 /// What validate says about the traffic; adds to `warnings`. `reason` not to start SUMO, or empty.
@@ -119,7 +121,13 @@ void addValidateCommand(CLI::App& program, int& exit_code) {
   command->add_flag("--fast", arguments->fast, "Do not start SUMO to try the traffic");
   command->add_flag("--planners", arguments->list,
                     "List the planners that a scenario can name, and end");
+  command->add_flag("--elements", arguments->elements,
+                    "List the elements of OpenSCENARIO files that are read, and end");
   command->callback([arguments, &exit_code] {
+    if (arguments->elements) {
+      std::cout << storyboard::supportTable();
+      return;
+    }
     if (arguments->list) return printPlanners();
     if (!arguments->group.empty()) arguments->print = true;
     const auto names =

@@ -94,10 +94,10 @@ Pose2d alongSpiral(const Piece& piece, double distance) {
   Pose2d pose = piece.start;
   for (int i = 0; i < count; ++i) {
     const double d = i * step;
-    pose.position += step / 6.0 *
-                     (geometry::direction(heading(d)) +
-                      4.0 * geometry::direction(heading(d + 0.5 * step)) +
-                      geometry::direction(heading(d + step)));
+    pose.position +=
+        step / 6.0 *
+        (geometry::direction(heading(d)) + 4.0 * geometry::direction(heading(d + 0.5 * step)) +
+         geometry::direction(heading(d + step)));
   }
   pose.heading = heading(distance);
   return pose;
@@ -235,8 +235,7 @@ double OpenDriveRoads::Road::project(const Eigen::Vector2d& point) const {
         return (left.second - point).squaredNorm() < (right.second - point).squaredNorm();
       });
   double s = nearest->first;
-  for (int i = 0; i < 3; ++i)
-    s = std::clamp(s + referenceAt(s).toBody(point).x(), 0.0, length);
+  for (int i = 0; i < 3; ++i) s = std::clamp(s + referenceAt(s).toBody(point).x(), 0.0, length);
   return s;
 }
 
@@ -312,10 +311,9 @@ std::optional<RoadPlace> OpenDriveRoads::locate(const Eigen::Vector2d& point, do
       const auto borders = road->borders(entry.first, s);
       const auto [low, high] = std::minmax(borders->first, borders->second);
       if (body.y() < low - kReach || body.y() > high + kReach) continue;
-      const double turned = std::abs(core::angleDifference(
-          heading, reference.heading + (entry.first > 0 ? core::kPi : 0.0)));
-      const double rank =
-          turned + kLevelWeight * std::abs(elevation - valueOf(road->elevation, s));
+      const double turned = std::abs(
+          core::angleDifference(heading, reference.heading + (entry.first > 0 ? core::kPi : 0.0)));
+      const double rank = turned + kLevelWeight * std::abs(elevation - valueOf(road->elevation, s));
       if (best && rank >= best_rank) continue;
       best = RoadPlace{id, entry.first, s, body.y()};
       best_rank = rank;

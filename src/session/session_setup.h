@@ -46,8 +46,8 @@ class SessionSetup {
   }
   /// One of another name in its place.
   std::unique_ptr<planning::Planner> makeCbvPlanner(const std::string& name) const;
-  /// SUMO with the network, the demand file, the lights and the storyboard of the scenario. Throws InputError and
-  /// SimulatorError as it does.
+  /// SUMO with the network, the demand file, the lights and the storyboard of the scenario. Throws
+  /// InputError and SimulatorError as it does.
   std::unique_ptr<simulation::TrafficSimulator> makeSimulator() const;
   /// What the storyboard has that is not supported and was ignored, with file and line.
   std::vector<std::string> ignoredElements() const;
@@ -72,7 +72,7 @@ class SessionSetup {
   ScenarioOptions options_;
   VehicleRigs rigs_;
   map::ImportedNetwork import_;
-  std::shared_ptr<const Roads> roads_;  ///< sessions on a network may share them
+  std::shared_ptr<const Roads> roads_;            ///< sessions on a network may share them
   std::shared_ptr<const storyboard::Play> play_;  ///< nullptr without a storyboard
   map::Route ego_route_;
 };

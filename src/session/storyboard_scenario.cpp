@@ -77,8 +77,7 @@ void chooseCbvs(const Scenario& scenario, const Entity& ego, ScenarioOptions& op
   std::vector<std::string> planners;
   options.cbv.only.clear();
   for (const Entity& entity : scenario.entities) {
-    const std::string planner =
-        &entity == &ego ? "" : plannerOf(entity, planners::Role::kCbv);
+    const std::string planner = &entity == &ego ? "" : plannerOf(entity, planners::Role::kCbv);
     if (planner.empty()) continue;
     planners.push_back(planner);
     options.cbv.only.push_back(entity.name);

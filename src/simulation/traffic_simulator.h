@@ -69,7 +69,8 @@ class TrafficSimulator {
   virtual const std::vector<SimulatedVehicle>& vehicles() const = 0;
   /// Traffic lights after the last step, in order of their ids.
   virtual const std::vector<traffic::SignalState>& signals() const = 0;
-  /// Whether the story that the traffic plays has come to its end; traffic without a story has none.
+  /// Whether the story that the traffic plays has come to its end; traffic without a story has
+  /// none.
   virtual bool over() const { return false; }
   /// Version text of the simulator ("SUMO 1.15.0").
   virtual std::string version() const = 0;

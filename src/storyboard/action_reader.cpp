@@ -59,7 +59,7 @@ ActionWhat readLaneOffset(const XoscElement& element, Reading&) {
   const XoscElement dynamics = element.child("LaneOffsetActionDynamics");
   constexpr double kUsual = 1.0;  // [m/s] across the lane, where only an acceleration is given
   action.dynamics.shape = dynamics.text("dynamicsShape") == "step" ? Dynamics::Shape::kStep
-                                                                  : Dynamics::Shape::kSinusoidal;
+                                                                   : Dynamics::Shape::kSinusoidal;
   action.dynamics.dimension = Dynamics::Dimension::kRate;
   action.dynamics.value = kUsual;
   const XoscElement target = element.child("LaneOffsetTarget").only();
@@ -158,31 +158,31 @@ struct ActionRow {
 };
 
 constexpr ActionRow kActions[] = {{"TeleportAction", readTeleport},
-                         {"SpeedAction", readSpeed},
-                         {"LaneChangeAction", readLaneChange},
-                         {"LaneOffsetAction", readLaneOffset},
-                         {"AcquirePositionAction", readAcquirePosition},
-                         {"AssignRouteAction", readAssignRoute},
-                         {"FollowTrajectoryAction", readTrajectory},
-                         {"LongitudinalDistanceAction", readDistance},
-                         {"EntityAction", readEntityAction},
-                         {"ParameterAction", readParameter},
-                         {"VariableAction", readParameter},
-                         {"AssignControllerAction", readController},
-                         {"ActivateControllerAction", readNothing},
-                         {"OverrideControllerValueAction", readNothing},
-                         {"EnvironmentAction", readNothing},
-                         {"VisibilityAction", readNothing},
-                         {"AppearanceAction", readNothing},
-                         {"LateralDistanceAction", nullptr},
-                         {"SpeedProfileAction", nullptr},
-                         {"SynchronizeAction", nullptr},
-                         {"RandomRouteAction", nullptr},
-                         {"InfrastructureAction", nullptr},
-                         {"TrafficAction", nullptr},
-                         {"TrailerAction", nullptr},
-                         {"SetMonitorAction", nullptr},
-                         {"UserDefinedAction", nullptr}};
+                                  {"SpeedAction", readSpeed},
+                                  {"LaneChangeAction", readLaneChange},
+                                  {"LaneOffsetAction", readLaneOffset},
+                                  {"AcquirePositionAction", readAcquirePosition},
+                                  {"AssignRouteAction", readAssignRoute},
+                                  {"FollowTrajectoryAction", readTrajectory},
+                                  {"LongitudinalDistanceAction", readDistance},
+                                  {"EntityAction", readEntityAction},
+                                  {"ParameterAction", readParameter},
+                                  {"VariableAction", readParameter},
+                                  {"AssignControllerAction", readController},
+                                  {"ActivateControllerAction", readNothing},
+                                  {"OverrideControllerValueAction", readNothing},
+                                  {"EnvironmentAction", readNothing},
+                                  {"VisibilityAction", readNothing},
+                                  {"AppearanceAction", readNothing},
+                                  {"LateralDistanceAction", nullptr},
+                                  {"SpeedProfileAction", nullptr},
+                                  {"SynchronizeAction", nullptr},
+                                  {"RandomRouteAction", nullptr},
+                                  {"InfrastructureAction", nullptr},
+                                  {"TrafficAction", nullptr},
+                                  {"TrailerAction", nullptr},
+                                  {"SetMonitorAction", nullptr},
+                                  {"UserDefinedAction", nullptr}};
 
 /// Elements around an action that say nothing themselves.
 bool isWrapper(const std::string& name) {

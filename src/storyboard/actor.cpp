@@ -43,10 +43,7 @@ void Actor::takeRoute(std::shared_ptr<const map::Route> route) {
   if (!route_) return;
   const geometry::Projection here = route_->path().project(reference_.pose.position);
   arc_length_ = here.arc_length;
-  offset_ = route_->path()
-                .extendedPoseAt(arc_length_)
-                .toBody(reference_.pose.position)
-                .y();
+  offset_ = route_->path().extendedPoseAt(arc_length_).toBody(reference_.pose.position).y();
 }
 
 void Actor::place(const MapPose& place) {
@@ -90,8 +87,8 @@ void Actor::adaptSpeed(std::function<double()> wanted, double acceleration, bool
 void Actor::startOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
   replace(lateral_, performing);
   const bool by_distance = dynamics.dimension == Dynamics::Dimension::kDistance;
-  offset_change_ = Transition(offset_, offset, dynamics.shape,
-                              extentOf(dynamics, offset - offset_), by_distance);
+  offset_change_ = Transition(offset_, offset, dynamics.shape, extentOf(dynamics, offset - offset_),
+                              by_distance);
 }
 
 void Actor::changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle, double offset,
@@ -100,8 +97,7 @@ void Actor::changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_mid
   const MapPose target{{lane_middle, reference_.pose.heading}, reference_.elevation};
   const auto route = places_.routeFrom(target);
   if (route) takeRoute(std::make_shared<const map::Route>(*route));
-  const double middle =
-      route_ ? route_->path().project(lane_middle).lateral_offset : 0.0;
+  const double middle = route_ ? route_->path().project(lane_middle).lateral_offset : 0.0;
   startOffset(dynamics, middle + offset, performing);
 }
 
@@ -199,8 +195,7 @@ void Actor::advanceOnTrajectory(double time, double step, double meters) {
     return;
   }
   constexpr double kTolerance = 1e-9;  // [s]
-  const auto after =
-      std::upper_bound(course.times.begin(), course.times.end(), time + kTolerance);
+  const auto after = std::upper_bound(course.times.begin(), course.times.end(), time + kTolerance);
   const auto next = static_cast<std::size_t>(after - course.times.begin());
   const Eigen::Vector2d before = reference_.pose.position;
   if (next == 0 || next == course.times.size()) {
@@ -208,9 +203,8 @@ void Actor::advanceOnTrajectory(double time, double step, double meters) {
   } else {
     const MapPose& from = course.places[next - 1];
     const MapPose& to = course.places[next];
-    const double share = std::clamp((time - course.times[next - 1]) /
-                                        (course.times[next] - course.times[next - 1]),
-                                    0.0, 1.0);
+    const double share = std::clamp(
+        (time - course.times[next - 1]) / (course.times[next] - course.times[next - 1]), 0.0, 1.0);
     const double turned = core::angleDifference(to.pose.heading, from.pose.heading);
     reference_.pose = {from.pose.position + share * (to.pose.position - from.pose.position),
                        core::wrapAngle(from.pose.heading + share * turned)};

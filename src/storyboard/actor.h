@@ -66,8 +66,7 @@ class Actor {
   void setOffset(const Dynamics& dynamics, double offset, const Performing& performing);
   void setRoute(map::Route route);
   /// `times` [s] of simulated time, one for each place, or none.
-  void follow(std::vector<MapPose> places, std::vector<double> times,
-              const Performing& performing);
+  void follow(std::vector<MapPose> places, std::vector<double> times, const Performing& performing);
 
   /// Moves on to `time`, `step` seconds later.
   void advance(double time, double step);

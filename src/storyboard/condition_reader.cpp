@@ -11,8 +11,8 @@ using Measure = EntityCondition::Measure;
 using Along = EntityCondition::Along;
 
 Rule readRule(const XoscElement& element) {
-  constexpr Rule kRules[] = {Rule::kGreater, Rule::kGreaterOrEqual, Rule::kLess,
-                             Rule::kLessOrEqual, Rule::kEqual, Rule::kNotEqual};
+  constexpr Rule kRules[] = {Rule::kGreater,     Rule::kGreaterOrEqual, Rule::kLess,
+                             Rule::kLessOrEqual, Rule::kEqual,          Rule::kNotEqual};
   return kRules[element.choice("rule", {"greaterThan", "greaterOrEqual", "lessThan", "lessOrEqual",
                                         "equalTo", "notEqualTo"})];
 }
@@ -114,21 +114,21 @@ struct ConditionRow {
 };
 
 constexpr ConditionRow kConditions[] = {{"SpeedCondition", readSpeed},
-                         {"RelativeSpeedCondition", readRelativeSpeed},
-                         {"AccelerationCondition", readAcceleration},
-                         {"StandStillCondition", readStandStill},
-                         {"TraveledDistanceCondition", readTraveled},
-                         {"ReachPositionCondition", readReach},
-                         {"DistanceCondition", readDistance},
-                         {"RelativeDistanceCondition", readRelativeDistance},
-                         {"TimeHeadwayCondition", readHeadway},
-                         {"TimeToCollisionCondition", readTimeToCollision},
-                         {"CollisionCondition", readCollision},
-                         {"EndOfRoadCondition", nullptr},
-                         {"OffroadCondition", nullptr},
-                         {"RelativeClearanceCondition", nullptr},
-                         {"RelativeAngleCondition", nullptr},
-                         {"AngleCondition", nullptr}};
+                                        {"RelativeSpeedCondition", readRelativeSpeed},
+                                        {"AccelerationCondition", readAcceleration},
+                                        {"StandStillCondition", readStandStill},
+                                        {"TraveledDistanceCondition", readTraveled},
+                                        {"ReachPositionCondition", readReach},
+                                        {"DistanceCondition", readDistance},
+                                        {"RelativeDistanceCondition", readRelativeDistance},
+                                        {"TimeHeadwayCondition", readHeadway},
+                                        {"TimeToCollisionCondition", readTimeToCollision},
+                                        {"CollisionCondition", readCollision},
+                                        {"EndOfRoadCondition", nullptr},
+                                        {"OffroadCondition", nullptr},
+                                        {"RelativeClearanceCondition", nullptr},
+                                        {"RelativeAngleCondition", nullptr},
+                                        {"AngleCondition", nullptr}};
 
 EntityCondition readByEntity(const XoscElement& element, const Reading& reading) {
   EntityCondition condition;
@@ -184,8 +184,8 @@ Condition readCondition(const XoscElement& element, Reading& reading) {
   Condition condition;
   condition.name = element.text("name", "");
   condition.source = element.source();
-  condition.edge = kEdges[element.choice("conditionEdge",
-                                         {"none", "rising", "falling", "risingOrFalling"})];
+  condition.edge =
+      kEdges[element.choice("conditionEdge", {"none", "rising", "falling", "risingOrFalling"})];
   condition.delay = std::max(0.0, element.number("delay", 0.0));
   try {
     if (const auto by_value = element.find("ByValueCondition")) {

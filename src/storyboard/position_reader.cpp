@@ -94,15 +94,15 @@ struct PositionRow {
 };
 
 constexpr PositionRow kPositions[] = {{"WorldPosition", readWorld},
-                         {"LanePosition", readLane},
-                         {"RoadPosition", readRoad},
-                         {"RelativeWorldPosition", readRelativeWorld},
-                         {"RelativeObjectPosition", readObject},
-                         {"RelativeLanePosition", readRelativeLane},
-                         {"RelativeRoadPosition", readRelativeRoad},
-                         {"RoutePosition", nullptr},
-                         {"TrajectoryPosition", nullptr},
-                         {"GeoPosition", nullptr}};
+                                      {"LanePosition", readLane},
+                                      {"RoadPosition", readRoad},
+                                      {"RelativeWorldPosition", readRelativeWorld},
+                                      {"RelativeObjectPosition", readObject},
+                                      {"RelativeLanePosition", readRelativeLane},
+                                      {"RelativeRoadPosition", readRelativeRoad},
+                                      {"RoutePosition", nullptr},
+                                      {"TrajectoryPosition", nullptr},
+                                      {"GeoPosition", nullptr}};
 
 }  // namespace
 
@@ -117,8 +117,7 @@ Position readPosition(const XoscElement& parent, const Reading& reading) {
 std::vector<ElementSupport> positionSupport() {
   std::vector<ElementSupport> rows;
   for (const PositionRow& row : kPositions)
-    rows.push_back(
-        {row.element, row.read != nullptr ? Support::kSupported : Support::kRefused});
+    rows.push_back({row.element, row.read != nullptr ? Support::kSupported : Support::kRefused});
   return rows;
 }
 

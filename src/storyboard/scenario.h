@@ -190,11 +190,11 @@ struct EntityCondition {
   bool all = false;  ///< of them, else any
   Measure measure = Measure::kSpeed;
   Rule rule = Rule::kGreater;
-  double value = 0.0;            ///< [m/s], [m/s^2], [s] or [m]
-  std::string other;             ///< entity; empty: a position, or for collisions anybody
+  double value = 0.0;  ///< [m/s], [m/s^2], [s] or [m]
+  std::string other;   ///< entity; empty: a position, or for collisions anybody
   std::optional<Position> place;
-  bool freespace = false;        ///< between boxes, else between reference points
-  bool lane_frame = false;       ///< along the lanes, else in the entity's own frame
+  bool freespace = false;   ///< between boxes, else between reference points
+  bool lane_frame = false;  ///< along the lanes, else in the entity's own frame
   Along along = Along::kStraight;
 };
 

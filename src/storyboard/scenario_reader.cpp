@@ -32,8 +32,7 @@ void readBox(const XoscElement& body, Entity& entity) {
   const traffic::VehicleDimensions& found = entity.dimensions;
   const double least = std::min({found.length, found.width, found.height});
   const double most = std::max({found.length, found.width, found.height});
-  if (least <= 0.0 || most > 100.0)
-    size.fail("expected lengths above 0 and up to 100 m");
+  if (least <= 0.0 || most > 100.0) size.fail("expected lengths above 0 and up to 100 m");
 }
 
 std::string controllerOf(const XoscElement& object, const Reading& reading) {
@@ -122,7 +121,9 @@ Story readStory(const XoscElement& plain, Reading& reading) {
   const XoscElement element = plain.declaring();
   Story story{element.text("name", ""), {}};
   for (const XoscElement& child : element.children("Act")) {
-    Act act{child.text("name"), {}, readTriggerOf(child, "StartTrigger", reading),
+    Act act{child.text("name"),
+            {},
+            readTriggerOf(child, "StartTrigger", reading),
             readTriggerOf(child, "StopTrigger", reading)};
     for (const XoscElement& group : child.children("ManeuverGroup")) {
       try {
@@ -152,8 +153,7 @@ void readInit(const XoscElement& actions, Reading& reading, Scenario& scenario) 
       continue;
     }
     const std::string entity = element.text("entityRef");
-    if (scenario.find(entity) == nullptr)
-      element.fail("there is no entity '" + entity + "'");
+    if (scenario.find(entity) == nullptr) element.fail("there is no entity '" + entity + "'");
     for (const XoscElement& action : element.children("PrivateAction")) {
       const auto controller = action.find("ControllerAction");
       // Version 1.0 puts an assignment and an override into one element.
@@ -244,8 +244,7 @@ Scenario readScenario(const std::string& file, bool ignore_unsupported) {
   Reading reading;
   reading.ignore_unsupported = ignore_unsupported;
   reading.carla = root.child("FileHeader").text("description", "").rfind("CARLA:", 0) == 0;
-  if (const auto locations = root.find("CatalogLocations"))
-    reading.catalogs = Catalogs(*locations);
+  if (const auto locations = root.find("CatalogLocations")) reading.catalogs = Catalogs(*locations);
   Scenario scenario;
   scenario.file = file;
   scenario.name = fs::path(file).stem().string();
@@ -266,7 +265,7 @@ Scenario readScenario(const std::string& file, bool ignore_unsupported) {
 }
 
 std::string supportTable() {
-  std::string table = "| Element | |\n|---|---|\n";
+  std::string table = "| Element | Support |\n|---|---|\n";
   for (const auto& rows : {actionSupport(), conditionSupport(), positionSupport()}) {
     for (const ElementSupport& row : rows) {
       const char* text = row.support == Support::kSupported       ? "yes"

@@ -62,9 +62,8 @@ bool endsWithNames(const std::string& path, const std::string& reference) {
 
 template <class Runs>
 bool allComplete(const Runs& runs) {
-  return std::all_of(runs.begin(), runs.end(), [](const auto& run) {
-    return run.element->state == ElementState::kComplete;
-  });
+  return std::all_of(runs.begin(), runs.end(),
+                     [](const auto& run) { return run.element->state == ElementState::kComplete; });
 }
 
 }  // namespace
@@ -249,8 +248,7 @@ void Storyboard::startGroup(GroupRun& group) {
     for (EventRun& event : maneuver.events) {
       event.executions = 0;
       event.element->state = ElementState::kStandby;
-      for (const ActionRun& action : event.actions)
-        action.element->state = ElementState::kStandby;
+      for (const ActionRun& action : event.actions) action.element->state = ElementState::kStandby;
     }
   }
 }

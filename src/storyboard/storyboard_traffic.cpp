@@ -74,8 +74,7 @@ std::vector<DrivenVehicle> StoryboardTraffic::moves() {
   for (const std::string& id : stage_.moved()) {
     const Actor& actor = stage_.actor(id);
     moves.push_back({id, actor.state(), actor.route()});
-    if (added_.insert(id).second)
-      traffic_->addDriven(id, actor.entity().dimensions, moves.back());
+    if (added_.insert(id).second) traffic_->addDriven(id, actor.entity().dimensions, moves.back());
   }
   for (auto id = added_.begin(); id != added_.end();) {
     const bool there = stage_.present(*id);

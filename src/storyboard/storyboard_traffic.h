@@ -50,9 +50,7 @@ class StoryboardTraffic : public simulation::TrafficSimulator {
   /// Throws InputError with file and line for an action that cannot be.
   void step(const std::vector<simulation::DrivenVehicle>& driven) override;
   const std::vector<simulation::SimulatedVehicle>& vehicles() const override { return vehicles_; }
-  const std::vector<traffic::SignalState>& signals() const override {
-    return traffic_->signals();
-  }
+  const std::vector<traffic::SignalState>& signals() const override { return traffic_->signals(); }
   std::string version() const override { return traffic_->version(); }
   bool over() const override { return storyboard_.over(); }
 

@@ -104,8 +104,8 @@ double TrafficStage::alongDistance(const EntityCondition& condition, const std::
   if (!condition.freespace || condition.other.empty()) return found;
   const Eigen::Vector2d forward = geometry::direction(own.pose.heading);
   const Eigen::Vector2d axis = lateral ? geometry::leftNormal(forward) : forward;
-  const double centers = std::abs(
-      axis.dot(member(condition.other).state.position - member(entity).state.position));
+  const double centers =
+      std::abs(axis.dot(member(condition.other).state.position - member(entity).state.position));
   const double extents = geometry::halfExtent(boxOf(entity), axis) +
                          geometry::halfExtent(boxOf(condition.other), axis);
   const double moved = std::abs(axis.dot(target - own.pose.position));
@@ -140,8 +140,7 @@ double TrafficStage::timeToCollision(const EntityCondition& condition,
 bool TrafficStage::collides(const EntityCondition& condition, const std::string& entity) const {
   for (const std::string& other : present_) {
     if (other == entity || (!condition.other.empty() && other != condition.other)) continue;
-    if (traffic::onDifferentLevels(member(entity).state.elevation,
-                                   member(other).state.elevation))
+    if (traffic::onDifferentLevels(member(entity).state.elevation, member(other).state.elevation))
       continue;
     if (geometry::overlap(boxOf(entity), boxOf(other))) return true;
   }
@@ -263,8 +262,7 @@ void TrafficStage::perform(const DistanceAction& action, Actor& actor,
 void TrafficStage::perform(const LaneChangeAction& action, const Source& source, Actor& actor,
                            const Actor::Performing& performing) {
   const MapPose reference = action.entity.empty() ? actor.reference() : poseOf(action.entity);
-  const Eigen::Vector2d middle =
-      places_.laneTarget(action, actor.reference(), reference, source);
+  const Eigen::Vector2d middle = places_.laneTarget(action, actor.reference(), reference, source);
   actor.changeLane(action.dynamics, middle, action.offset, performing);
 }
 
@@ -280,8 +278,7 @@ void TrafficStage::perform(const FollowTrajectoryAction& action, double time, Ac
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (action.vertices[i].position.oriented) continue;
     const std::size_t first = i + 1 < places.size() ? i : i - 1;
-    const Eigen::Vector2d ahead =
-        places[first + 1].pose.position - places[first].pose.position;
+    const Eigen::Vector2d ahead = places[first + 1].pose.position - places[first].pose.position;
     if (ahead.norm() > 1e-6) places[i].pose.heading = std::atan2(ahead.y(), ahead.x());
   }
   actor.follow(std::move(places), std::move(times), performing);
@@ -309,15 +306,15 @@ void TrafficStage::perform(const Action& action, const std::string& entity, doub
     return;
   }
   Actor& actor = *actors_.at(entity).actor;
-  if (const auto* speed = std::get_if<SpeedAction>(&what)) return perform(*speed, actor, performing);
+  if (const auto* speed = std::get_if<SpeedAction>(&what))
+    return perform(*speed, actor, performing);
   if (const auto* lane = std::get_if<LaneChangeAction>(&what))
     return perform(*lane, action.source, actor, performing);
   if (const auto* beside = std::get_if<LaneOffsetAction>(&what))
     return actor.setOffset(beside->dynamics, beside->value, performing);
   if (const auto* course = std::get_if<FollowTrajectoryAction>(&what))
     return perform(*course, time, actor, performing);
-  if (const auto* gap = std::get_if<DistanceAction>(&what))
-    return perform(*gap, actor, performing);
+  if (const auto* gap = std::get_if<DistanceAction>(&what)) return perform(*gap, actor, performing);
   if (const auto* route = std::get_if<RouteAction>(&what)) perform(*route, action.source, actor);
   performing->over = true;
 }
@@ -346,8 +343,7 @@ std::vector<std::shared_ptr<Performance>> TrafficStage::begin(
 
 // What moves.
 
-void TrafficStage::measure(Member& known, const traffic::VehicleState& before,
-                           double step) const {
+void TrafficStage::measure(Member& known, const traffic::VehicleState& before, double step) const {
   known.traveled += (known.state.position - before.position).norm();
   known.standing = known.state.speed < 0.05 ? known.standing + step : 0.0;
 }

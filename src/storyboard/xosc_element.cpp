@@ -73,8 +73,8 @@ double XoscElement::number(const char* key) const {
   constexpr double kInfinite = 1e300;  // stands for INF, which the format allows
   if (value == "INF" || value == "inf") return kInfinite;
   const auto parsed = core::parseNumber(value);
-  if (!parsed) fail(std::string("'") + key + "' is '" + core::shortened(value) +
-                    "'; expected a number");
+  if (!parsed)
+    fail(std::string("'") + key + "' is '" + core::shortened(value) + "'; expected a number");
   return *parsed;
 }
 

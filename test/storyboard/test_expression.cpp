@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "storyboard/expression.h"
-
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/core/exceptions.h"
+#include "storyboard/expression.h"
 #include "support/error_text.h"
 
 namespace cdiff::storyboard {
@@ -13,7 +11,7 @@ namespace {
 const Parameters kParameters = {{"speed", "10"}, {"name", "car"}, {"zero", "0"}};
 
 std::string errorOf(const std::string& text) {
-  return test::errorText<core::InputError>([&] { resolved(text, kParameters); });
+  return test::errorOf([&] { resolved(text, kParameters); });
 }
 
 TEST(Expression, TextsWithoutADollarAndParametersAreTheirValues) {

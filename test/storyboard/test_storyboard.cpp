@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // The state machine, on a stage that only writes down what it is asked to do.
-#include "storyboard/storyboard.h"
-
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "storyboard/storyboard.h"
 
 namespace cdiff::storyboard {
 namespace {
@@ -136,8 +135,7 @@ TEST(Storyboard, ARisingEdgeFiresOnceForEachRise) {
 }
 
 TEST(Storyboard, ADelayIsCountedFromTheRise) {
-  const Scenario scenario =
-      scenarioOf({event("late", when("go", Condition::Edge::kRising, 0.25))});
+  const Scenario scenario = scenarioOf({event("late", when("go", Condition::Edge::kRising, 0.25))});
   ScriptedStage stage;
   Storyboard board(scenario, stage);
   stage.truth["go"] = true;

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/file.h"
+#include "storyboard/reading.h"
+#include "storyboard/scenario_reader.h"
+#include "support/error_text.h"
+#include "support/temporary_folder.h"
+
+namespace cdiff::storyboard {
+namespace {
+
+constexpr const char* kBox =
+    R"(<BoundingBox><Center x="1.5" y="0" z="0.7"/><Dimensions width="2" length="4" height="1.4"/></BoundingBox>)";
+
+class ScenarioReader : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) const {
+    const std::filesystem::path file = folder_.path() / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+    return file.string();
+  }
+  /// A scenario whose parts are filled in, each on lines of its own.
+  std::string scenario(const std::string& init, const std::string& catalogs = "",
+                       const std::string& entities = "", const std::string& story = "") const {
+    return write("scenario.xosc",
+                 R"(<OpenSCENARIO>
+<FileHeader revMajor="1" revMinor="1" description="test"/>
+<ParameterDeclarations><ParameterDeclaration name="v" value="4"/></ParameterDeclarations>
+<CatalogLocations>)" +
+                     catalogs +
+                     R"(</CatalogLocations>
+<RoadNetwork><LogicFile filepath="road.xodr"/></RoadNetwork>
+<Entities>
+<ScenarioObject name="Ego"><Vehicle name="a">)" +
+                     kBox + "</Vehicle></ScenarioObject>\n" + entities +
+                     "</Entities>\n<Storyboard><Init><Actions>\n" + init + "</Actions></Init>\n" +
+                     story + "</Storyboard></OpenSCENARIO>");
+  }
+  static std::string privateAction(const std::string& action) {
+    return "<Private entityRef=\"Ego\"><PrivateAction>\n" + action + "</PrivateAction></Private>\n";
+  }
+  static std::string speed(const std::string& value) {
+    return privateAction(
+        "<LongitudinalAction><SpeedAction><SpeedActionDynamics dynamicsShape=\"linear\" "
+        "dynamicsDimension=\"rate\" value=\"2\"/><SpeedActionTarget><AbsoluteTargetSpeed value=\"" +
+        value + "\"/></SpeedActionTarget></SpeedAction></LongitudinalAction>");
+  }
+  static std::string errorIn(const std::string& file, bool ignore = false) {
+    return test::errorOf([&] { readScenario(file, ignore); });
+  }
+  static void expectText(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ScenarioReader, ReadsEntitiesActionsAndExpressions) {
+  const Scenario read = readScenario(scenario(speed("${$v / 2}")), false);
+  ASSERT_EQ(read.entities.size(), 1U);
+  EXPECT_EQ(read.entities[0].dimensions.length, 4.0);
+  EXPECT_EQ(read.entities[0].center.x(), 1.5);
+  ASSERT_EQ(read.init.size(), 1U);
+  const auto& action = std::get<SpeedAction>(read.init[0].action.what);
+  EXPECT_EQ(action.value, 2.0);
+  EXPECT_EQ(action.dynamics.shape, Dynamics::Shape::kLinear);
+  EXPECT_EQ(action.dynamics.dimension, Dynamics::Dimension::kRate);
+  EXPECT_EQ(read.parameters.at("v"), "4");
+}
+
+TEST_F(ScenarioReader, EntriesOfCatalogsTakeParameters) {
+  write("catalogs/cars.xosc", std::string(R"(<OpenSCENARIO><Catalog name="cars">
+<Vehicle name="long"><ParameterDeclarations><ParameterDeclaration name="l" value="5"/></ParameterDeclarations>
+<BoundingBox><Center x="1" y="0" z="0"/><Dimensions width="2" length="$l" height="1"/></BoundingBox></Vehicle>
+</Catalog></OpenSCENARIO>)"));
+  const std::string entity =
+      R"(<ScenarioObject name="truck"><CatalogReference catalogName="cars" entryName="long">
+<ParameterAssignments><ParameterAssignment parameterRef="l" value="9"/></ParameterAssignments>
+</CatalogReference></ScenarioObject>)";
+  const std::string place = R"(<VehicleCatalog><Directory path="catalogs"/></VehicleCatalog>)";
+  const Scenario read = readScenario(scenario("", place, entity), false);
+  EXPECT_EQ(read.find("truck")->dimensions.length, 9.0);
+}
+
+TEST_F(ScenarioReader, CatalogsInACircleAreRefused) {
+  write("catalogs/cars.xosc", R"(<OpenSCENARIO><Catalog name="cars">
+<CatalogReference name="a" catalogName="cars" entryName="b"/>
+<CatalogReference name="b" catalogName="cars" entryName="a"/></Catalog></OpenSCENARIO>)");
+  const std::string entity =
+      R"(<ScenarioObject name="car"><CatalogReference catalogName="cars" entryName="a"/></ScenarioObject>)";
+  const std::string place = R"(<VehicleCatalog><Directory path="catalogs"/></VehicleCatalog>)";
+  expectText(errorIn(scenario("", place, entity)), "in a circle");
+}
+
+TEST_F(ScenarioReader, DocumentTypesAreRefusedWithTheirLine) {
+  const std::string file = write("bomb.xosc",
+                                 "<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY b "
+                                 "\"cc\">]>\n<OpenSCENARIO>&b;</OpenSCENARIO>");
+  expectText(errorIn(file), file + ":2: <!DOCTYPE> is refused");
+}
+
+TEST_F(ScenarioReader, BrokenFilesNameTheirLine) {
+  const std::string file = write("broken.xosc", "<OpenSCENARIO>\n<FileHeader\n");
+  expectText(errorIn(file), file + ":2: not XML");
+}
+
+TEST_F(ScenarioReader, ADivisionByZeroNamesFileAndLine) {
+  const std::string file = scenario(speed("${1 / ($v - 4)}"));
+  expectText(errorIn(file), file + ":11: <AbsoluteTargetSpeed>");
+  expectText(errorIn(file), "divides by zero");
+}
+
+TEST_F(ScenarioReader, AnEntityWithoutAModelIsRefused) {
+  const std::string file = scenario("", "", "<ScenarioObject name=\"ghost\"/>");
+  expectText(errorIn(file), ":8: <ScenarioObject>: the entity 'ghost' has no model");
+}
+
+TEST_F(ScenarioReader, UnknownEntitiesAreNamedBeforeAnythingRuns) {
+  const std::string file = scenario(privateAction(
+      "<TeleportAction><Position><RelativeLanePosition entityRef=\"nobody\" dLane=\"0\" ds=\"5\"/>"
+      "</Position></TeleportAction>"));
+  expectText(errorIn(file), "there is no entity 'nobody'; expected one of {Ego}");
+}
+
+TEST_F(ScenarioReader, WhatIsNotSupportedIsRefusedOrListed) {
+  const std::string curve =
+      "<RoutingAction><FollowTrajectoryAction><Trajectory name=\"t\" closed=\"false\"><Shape>\n"
+      "<Nurbs order=\"9\"/></Shape></Trajectory></FollowTrajectoryAction></RoutingAction>";
+  const std::string file = scenario(privateAction(curve));
+  expectText(errorIn(file), file + ":12: <Nurbs>: a trajectory of this shape is not supported");
+  const Scenario read = readScenario(file, true);
+  ASSERT_EQ(read.ignored.size(), 1U);
+  expectText(read.ignored[0], ":12: <Nurbs>");
+  EXPECT_TRUE(std::holds_alternative<NoAction>(read.init[0].action.what));
+}
+
+TEST_F(ScenarioReader, CarlasCoordinatesAreMirrored) {
+  const std::string file = scenario(privateAction(
+      "<TeleportAction><Position><WorldPosition x=\"1\" y=\"2\" h=\"0.5\"/></Position>"
+      "</TeleportAction>"));
+  std::string text = core::readFile(file, "scenario");
+  text.replace(text.find("description=\"test\""), 18, "description=\"CARLA:test\"");
+  const Scenario read = readScenario(write("carla.xosc", text), false);
+  const Position& to = std::get<TeleportAction>(read.init[0].action.what).to;
+  EXPECT_EQ(to.point.y(), -2.0);
+  EXPECT_EQ(to.heading, -0.5);
+}
+
+TEST_F(ScenarioReader, TheTableNamesEachElementOnce) {
+  std::set<std::string> seen;
+  for (const auto& rows : {actionSupport(), conditionSupport(), positionSupport()})
+    for (const ElementSupport& row : rows) EXPECT_TRUE(seen.insert(row.element).second);
+  EXPECT_NE(supportTable().find("| `TeleportAction` | yes |"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cdiff::storyboard
