@@ -89,10 +89,36 @@ void chooseCbvs(const Scenario& scenario, const Entity& ego, ScenarioOptions& op
   options.cbv_planner = same ? planners[0] : core::joinText(planners, "+");
 }
 
-/// A session passes that ends without a contact that is the ego's fault.
-VerdictOptions rules() {
+/// A criterion of scenario_runner, and the rule that it stands for.
+struct Criterion {
+  const char* name;
+  double VerdictOptions::*most;  ///< may be 0 at most
+};
+
+constexpr Criterion kCriteria[] = {
+    {"criteria_collisiontest", &VerdictOptions::maximum_ego_collisions},
+    {"criteria_runningredlighttest", &VerdictOptions::maximum_red_lights},
+    {"criteria_runningstoptest", &VerdictOptions::maximum_stop_signs},
+    {"criteria_wronglanetest", &VerdictOptions::maximum_outside_lanes_percent},
+    {"criteria_onsidewalktest", &VerdictOptions::maximum_outside_lanes_percent},
+    {"criteria_keeplanetest", &VerdictOptions::maximum_outside_lanes_percent}};
+
+void addCriterion(const storyboard::Condition& condition, VerdictOptions& verdict) {
+  const auto* const parameter = std::get_if<storyboard::ParameterCondition>(&condition.what);
+  if (parameter == nullptr) return;
+  const std::string name = lowerCase(parameter->name);
+  for (const Criterion& criterion : kCriteria)
+    if (name == criterion.name) verdict.*criterion.most = 0.0;
+}
+
+/// A session passes that ends without a contact that is the ego's fault and meets the criteria of
+/// the stop trigger.
+VerdictOptions rules(const Scenario& scenario) {
   VerdictOptions verdict = VerdictOptions::standard();
   verdict.minimum_route_completion = 0.0;
+  if (!scenario.stop) return verdict;
+  for (const auto& group : scenario.stop->groups)
+    for (const storyboard::Condition& condition : group) addCriterion(condition, verdict);
   return verdict;
 }
 
@@ -116,7 +142,7 @@ ScenarioOptions openScenarioOptions(const std::string& file, const ScenarioOptio
   options.storyboard.file = std::filesystem::absolute(file).string();
   options.network = scenario.network;
   options.demand = "none";
-  options.verdict = rules();
+  options.verdict = rules(scenario);
   const double speed = startSpeedOf(scenario, ego.name);
   options.route.start_speed = std::min(speed, 60.0);
   if (speed > 0.5) options.target_speed = std::min(speed, 40.0);

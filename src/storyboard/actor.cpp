@@ -86,6 +86,7 @@ void Actor::adaptSpeed(std::function<double()> wanted, double acceleration, bool
 
 void Actor::startOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
   replace(lateral_, performing);
+  if (!route_) return finish(lateral_);  // there is nothing to be beside
   const bool by_distance = dynamics.dimension == Dynamics::Dimension::kDistance;
   offset_change_ = Transition(offset_, offset, dynamics.shape, extentOf(dynamics, offset - offset_),
                               by_distance);
@@ -112,15 +113,18 @@ void Actor::setRoute(map::Route route) {
 void Actor::follow(std::vector<MapPose> places, std::vector<double> times,
                    const Performing& performing) {
   replace(lateral_, performing);
-  if (!times.empty()) replace(longitudinal_, nullptr);
-  if (!times.empty()) speed_change_.reset();
   offset_change_.reset();
+  const bool timed = !times.empty();
+  if (timed) {
+    replace(longitudinal_, nullptr);
+    speed_change_.reset();
+    wanted_speed_ = nullptr;
+  }
   std::vector<Eigen::Vector3d> points;
   for (const MapPose& place : places)
     points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
-  const double length = times.empty() ? 1.0 : 0.0;
   trajectory_ = Trajectory{std::move(places), std::move(times), {}, 0.0, performing};
-  if (length > 0.0) trajectory_->line = geometry::Polyline(points);
+  if (!timed) trajectory_->line = geometry::Polyline(points);
 }
 
 void Actor::changeSpeed(double step) {

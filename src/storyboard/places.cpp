@@ -178,16 +178,11 @@ MapPose Places::resolve(const Position& position, const PoseOf& pose_of) const {
 }
 
 Eigen::Vector2d Places::laneTarget(const LaneChangeAction& change, const MapPose& self,
-                                   const MapPose& reference, const Source& source) const {
-  try {
-    const map::RoadPlace own = roadPlace(self);
-    const int lane =
-        change.entity.empty() ? change.lane : laneBeside(roadPlace(reference).lane, change.lane);
-    const MapPose place = lanePose(own.road, lane, own.s, 0.0);
-    return place.pose.position;
-  } catch (const InputError& error) {
-    throw InputError(source.text() + ": " + error.what());
-  }
+                                   const MapPose& reference) const {
+  const map::RoadPlace own = roadPlace(self);
+  const int lane =
+      change.entity.empty() ? change.lane : laneBeside(roadPlace(reference).lane, change.lane);
+  return lanePose(own.road, lane, own.s, 0.0).pose.position;
 }
 
 std::optional<map::Route> Places::routeFrom(const MapPose& place) const {

@@ -32,10 +32,10 @@ class Places {
   /// its own a position on a lane has that of the lane. Throws InputError with file and line for a
   /// road, a lane or a place that is not there.
   MapPose resolve(const Position& position, const PoseOf& pose_of) const;
-  /// The middle of the lane that a lane change leads to, abreast of `self`. Throws InputError as
-  /// above; `source` is the action.
+  /// The middle of the lane that a lane change leads to, abreast of `self`. Throws InputError
+  /// for a lane that is not there, without a place in the file.
   Eigen::Vector2d laneTarget(const LaneChangeAction& change, const MapPose& self,
-                             const MapPose& reference, const Source& source) const;
+                             const MapPose& reference) const;
   /// The route along lanes from a place on, straight on where it can; nullopt off every lane of
   /// about that heading.
   std::optional<map::Route> routeFrom(const MapPose& place) const;

@@ -145,6 +145,7 @@ struct Action {
       what;
 };
 
+/// How a measured value is compared with a given one.
 enum class Rule { kGreater, kGreaterOrEqual, kLess, kLessOrEqual, kEqual, kNotEqual };
 
 /// Simulated time [s].

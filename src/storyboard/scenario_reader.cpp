@@ -19,7 +19,7 @@ void requireVersion(const XoscElement& header) {
   const int minor = header.integer("revMinor");
   if (major == 1 && minor >= 0 && minor <= 3) return;
   header.fail("the version is " + std::to_string(major) + "." + std::to_string(minor) +
-              "; expected 1.0 to 1.2");
+              "; expected 1.0 to 1.3");
 }
 
 /// Box and center; the center's y and z do not matter here.

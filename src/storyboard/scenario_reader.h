@@ -8,7 +8,7 @@
 
 namespace cdiff::storyboard {
 
-/// Reads an OpenSCENARIO XML file of version 1.0 to 1.2 with its catalogs. Throws InputError naming
+/// Reads an OpenSCENARIO XML file of version 1.0 to 1.3 with its catalogs. Throws InputError naming
 /// file, line and element for what is wrong, and for what is not supported, unless that is to be
 /// ignored; the scenario then lists it.
 Scenario readScenario(const std::string& file, bool ignore_unsupported);

@@ -73,6 +73,11 @@ void TrafficStage::begin() {
 
 // What is measured.
 
+MapPose TrafficStage::poseOf(const std::string& entity) const {
+  if (present(entity)) return member(entity).reference;
+  throw core::InputError("the entity '" + entity + "' is not there at this time");
+}
+
 geometry::OrientedBox TrafficStage::boxOf(const std::string& entity) const {
   const Member& known = member(entity);
   const traffic::VehicleDimensions& size = known.actor->entity().dimensions;
@@ -149,7 +154,8 @@ bool TrafficStage::collides(const EntityCondition& condition, const std::string&
 
 bool TrafficStage::measured(const EntityCondition& condition, const std::string& entity) const {
   if (!present(entity)) return false;
-  if (!condition.other.empty() && !present(condition.other)) return false;
+  for (const std::string& other : {condition.other, condition.place ? condition.place->entity : ""})
+    if (!other.empty() && !present(other)) return false;
   const Member& own = member(entity);
   const auto holds = [&](double value) {
     return compareNumbers(condition.rule, value, condition.value);
@@ -259,10 +265,10 @@ void TrafficStage::perform(const DistanceAction& action, Actor& actor,
   actor.adaptSpeed(wanted, action.acceleration, action.continuous, performing);
 }
 
-void TrafficStage::perform(const LaneChangeAction& action, const Source& source, Actor& actor,
+void TrafficStage::perform(const LaneChangeAction& action, Actor& actor,
                            const Actor::Performing& performing) {
   const MapPose reference = action.entity.empty() ? actor.reference() : poseOf(action.entity);
-  const Eigen::Vector2d middle = places_.laneTarget(action, actor.reference(), reference, source);
+  const Eigen::Vector2d middle = places_.laneTarget(action, actor.reference(), reference);
   actor.changeLane(action.dynamics, middle, action.offset, performing);
 }
 
@@ -284,17 +290,13 @@ void TrafficStage::perform(const FollowTrajectoryAction& action, double time, Ac
   actor.follow(std::move(places), std::move(times), performing);
 }
 
-void TrafficStage::perform(const RouteAction& action, const Source& source, Actor& actor) {
+void TrafficStage::perform(const RouteAction& action, Actor& actor) {
   std::vector<Eigen::Vector3d> points;
   for (const Position& waypoint : action.waypoints) {
     const MapPose place = places_.resolve(waypoint, pose_of_);
     points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
   }
-  try {
-    actor.setRoute(places_.routeThrough(actor.reference(), std::move(points)));
-  } catch (const core::InputError& error) {
-    throw core::InputError(source.text() + ": " + error.what());
-  }
+  actor.setRoute(places_.routeThrough(actor.reference(), std::move(points)));
 }
 
 void TrafficStage::perform(const Action& action, const std::string& entity, double time,
@@ -309,17 +311,28 @@ void TrafficStage::perform(const Action& action, const std::string& entity, doub
   if (const auto* speed = std::get_if<SpeedAction>(&what))
     return perform(*speed, actor, performing);
   if (const auto* lane = std::get_if<LaneChangeAction>(&what))
-    return perform(*lane, action.source, actor, performing);
+    return perform(*lane, actor, performing);
   if (const auto* beside = std::get_if<LaneOffsetAction>(&what))
     return actor.setOffset(beside->dynamics, beside->value, performing);
   if (const auto* course = std::get_if<FollowTrajectoryAction>(&what))
     return perform(*course, time, actor, performing);
   if (const auto* gap = std::get_if<DistanceAction>(&what)) return perform(*gap, actor, performing);
-  if (const auto* route = std::get_if<RouteAction>(&what)) perform(*route, action.source, actor);
+  if (const auto* route = std::get_if<RouteAction>(&what)) perform(*route, actor);
   performing->over = true;
 }
 
 std::vector<std::shared_ptr<Performance>> TrafficStage::begin(
+    const Action& action, const std::vector<std::string>& actors, double time) {
+  try {
+    return start(action, actors, time);
+  } catch (const core::InputError& error) {
+    const std::string text = error.what();
+    const bool placed = text.rfind(action.source.file + ":", 0) == 0;
+    throw core::InputError((placed ? "" : action.source.text() + ": ") + text);
+  }
+}
+
+std::vector<std::shared_ptr<Performance>> TrafficStage::start(
     const Action& action, const std::vector<std::string>& actors, double time) {
   const bool global = std::holds_alternative<EntityAction>(action.what) ||
                       std::holds_alternative<ParameterAction>(action.what) ||

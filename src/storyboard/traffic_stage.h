@@ -58,7 +58,8 @@ class TrafficStage : public Stage {
     const map::Route* planned_route = nullptr;
   };
   const Member& member(const std::string& entity) const { return actors_.at(entity); }
-  MapPose poseOf(const std::string& entity) const { return member(entity).reference; }
+  /// Throws InputError for an entity that is not there.
+  MapPose poseOf(const std::string& entity) const;
   geometry::OrientedBox boxOf(const std::string& entity) const;
   const map::Route* routeOf(const std::string& entity) const;
   bool measured(const EntityCondition& condition, const std::string& entity) const;
@@ -68,15 +69,17 @@ class TrafficStage : public Stage {
   double timeToCollision(const EntityCondition& condition, const std::string& entity) const;
   Eigen::Vector2d velocityOf(const std::string& entity) const;
   bool collides(const EntityCondition& condition, const std::string& entity) const;
+  std::vector<std::shared_ptr<Performance>> start(const Action& action,
+                                                  const std::vector<std::string>& actors,
+                                                  double time);
   void perform(const Action& action, const std::string& entity, double time,
                const std::shared_ptr<Performance>& performing);
   void perform(const SpeedAction& action, Actor& actor, const Actor::Performing& performing);
   void perform(const DistanceAction& action, Actor& actor, const Actor::Performing& performing);
-  void perform(const LaneChangeAction& action, const Source& source, Actor& actor,
-               const Actor::Performing& performing);
+  void perform(const LaneChangeAction& action, Actor& actor, const Actor::Performing& performing);
   void perform(const FollowTrajectoryAction& action, double time, Actor& actor,
                const Actor::Performing& performing);
-  void perform(const RouteAction& action, const Source& source, Actor& actor);
+  void perform(const RouteAction& action, Actor& actor);
   void performGlobal(const Action& action);
   void place(const std::string& entity, const Position& position);
   void change(const ParameterAction& action);

@@ -19,7 +19,7 @@ constexpr int kBadInput = 3;
 class OpenScenario : public test::CdiffCommand {
  protected:
   void SetUp() override {
-    fs::copy(core::shareFolder() / "examples/openscenario", path("files"),
+    fs::copy(core::shareFolder() / "config/openscenario", path("files"),
              fs::copy_options::recursive);
   }
   /// Replaces a text of the example.

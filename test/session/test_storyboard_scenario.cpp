@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// What a session takes from an OpenSCENARIO file: changes of the shipped example.
+#include <gtest/gtest.h>
+
+#include "core/file.h"
+#include "session/session_setup.h"
+#include "session/storyboard_scenario.h"
+#include "support/error_text.h"
+#include "support/temporary_folder.h"
+
+namespace cdiff::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOvertaker =
+    "<ScenarioObject name=\"overtaker\">\n      <CatalogReference catalogName=\"vehicles\" "
+    "entryName=\"car\"/>";
+constexpr const char* kStop = "<StopTrigger>\n      <ConditionGroup>";
+
+class StoryboardScenario : public testing::Test {
+ protected:
+  StoryboardScenario() {
+    fs::copy(core::shareFolder() / "config/openscenario", folder_.path() / "files",
+             fs::copy_options::recursive);
+  }
+  std::string file() const { return (folder_.path() / "files/cut_in.xosc").string(); }
+  void change(const std::string& from, const std::string& to) const {
+    std::string text = core::readFile(file(), "example");
+    const std::size_t place = text.find(from);
+    ASSERT_NE(place, std::string::npos) << from;
+    core::writeFileAtomically(file(), text.replace(place, from.size(), to));
+  }
+  ScenarioOptions options() const { return openScenarioOptions(file(), {}, true); }
+  std::string error() const {
+    return test::errorOf([&] { options(); });
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(StoryboardScenario, TheFileGivesNetworkSpeedAndNoCbv) {
+  const ScenarioOptions options = this->options();
+  EXPECT_EQ(options.name, "cut_in");
+  EXPECT_EQ(fs::path(options.network).filename(), "straight_road.xodr");
+  EXPECT_EQ(options.demand, "none");
+  EXPECT_EQ(options.route.start_speed, 10.0);
+  EXPECT_EQ(options.target_speed, 10.0);
+  EXPECT_EQ(options.max_cbv, 0);
+  EXPECT_EQ(options.verdict.maximum_contacts_at_fault, 0.0);
+}
+
+TEST_F(StoryboardScenario, TheEgosRouteStartsWithItsBoxAndFollowsItsLane) {
+  ScenarioOptions options = this->options();
+  const SessionSetup setup(options);
+  // The reference point is at s = 50 m on lane -2, the box's center 1.4 m ahead of it.
+  const Eigen::Vector3d start = setup.egoRoute().path().pointAt(0.0);
+  EXPECT_NEAR(start.x(), 51.4, 0.1);
+  EXPECT_NEAR(start.y(), -5.25, 0.05);
+  EXPECT_NEAR(setup.egoRoute().length(), 600.0 - 51.4, 2.0);
+}
+
+TEST_F(StoryboardScenario, ControllersNamedLikePlannersMakeCbvs) {
+  change(kOvertaker, std::string(kOvertaker) +
+                         "<ObjectController><Controller name=\"diffusion\"/></ObjectController>");
+  const ScenarioOptions options = this->options();
+  EXPECT_EQ(options.cbv_planner, "diffusion");
+  EXPECT_EQ(options.cbv.only, std::vector<std::string>{"overtaker"});
+  EXPECT_EQ(options.max_cbv, 1);
+}
+
+TEST_F(StoryboardScenario, WithoutAnExternalControllerTheEgoIsFoundByItsName) {
+  change("external_control", "some_controller");
+  EXPECT_EQ(options().route.start_speed, 10.0);
+  change("<ScenarioObject name=\"Ego\">", "<ScenarioObject name=\"target\">");
+  change("<Private entityRef=\"Ego\">", "<Private entityRef=\"target\">");
+  std::string text = core::readFile(file(), "example");
+  for (std::size_t at = text.find("entityRef=\"Ego\""); at != std::string::npos;
+       at = text.find("entityRef=\"Ego\""))
+    text.replace(at, 15, "entityRef=\"target\"");
+  core::writeFileAtomically(file(), text);
+  EXPECT_NE(error().find("cut_in.xosc:18: no entity is the ego"), std::string::npos) << error();
+}
+
+TEST_F(StoryboardScenario, CriteriaOfTheStopTriggerBecomeRules) {
+  const std::string criterion =
+      "<Condition name=\"c\" delay=\"0\" conditionEdge=\"rising\"><ByValueCondition>"
+      "<ParameterCondition parameterRef=\"criteria_CollisionTest\" value=\"\" rule=\"lessThan\"/>"
+      "</ByValueCondition></Condition>";
+  EXPECT_GT(options().verdict.maximum_ego_collisions, 0.0);
+  change(kStop, kStop + criterion + "</ConditionGroup><ConditionGroup>");
+  EXPECT_EQ(options().verdict.maximum_ego_collisions, 0.0);
+}
+
+TEST_F(StoryboardScenario, NamesThatAreNoIdsOfVehiclesAreRefused) {
+  change("<ScenarioObject name=\"overtaker\">", "<ScenarioObject name=\"an overtaker\">");
+  std::string text = core::readFile(file(), "example");
+  for (std::size_t at = text.find("\"overtaker\""); at != std::string::npos;
+       at = text.find("\"overtaker\""))
+    text.replace(at, 11, "\"an overtaker\"");
+  core::writeFileAtomically(file(), text);
+  EXPECT_NE(error().find("'an overtaker' cannot be the name of a vehicle"), std::string::npos)
+      << error();
+}
+
+}  // namespace
+}  // namespace cdiff::session
