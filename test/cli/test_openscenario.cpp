@@ -88,7 +88,7 @@ TEST_F(OpenScenario, WhatIsNotSupportedIsRefusedOrListedInTheSummary) {
   change("<LateralAction>", "<LongitudinalAction>");
   change("</LateralAction>", "</LongitudinalAction>");
   EXPECT_EQ(drive("refused"), kBadInput);
-  expectOutput("cut_in.xosc:80: <SpeedProfileAction>: this action is not supported");
+  expectOutput("cut_in.xosc:84: <SpeedProfileAction>: this action is not supported");
   EXPECT_FALSE(fs::exists(path("refused")));
   ASSERT_EQ(drive("ignored", {"--ignore-unsupported"}), kPassed) << output();
   const std::string faults = summary("ignored").at("faults").dump();
@@ -98,7 +98,7 @@ TEST_F(OpenScenario, WhatIsNotSupportedIsRefusedOrListedInTheSummary) {
 TEST_F(OpenScenario, ARoadThatIsNotThereIsBadInput) {
   change("roadId=\"1\"", "roadId=\"7\"");
   EXPECT_EQ(drive("nowhere"), kBadInput);
-  expectOutput("cut_in.xosc:39: the network");
+  expectOutput("cut_in.xosc:37: the network");
   expectOutput("has no road '7'");
   EXPECT_FALSE(fs::exists(path("nowhere")));
 }
