@@ -214,7 +214,7 @@ class Saboteur : public SessionObserver {
 double secondsUntilErrorAfter(int signal, const std::vector<std::string>& set) {
   const SessionSetup setup(scenarioWith("crossing_left_turn", set));
   auto simulator = setup.makeSimulator();
-  Saboteur saboteur(simulator->processId(), signal);
+  Saboteur saboteur(dynamic_cast<simulation::SumoSimulator&>(*simulator).processId(), signal);
   LoopParts parts = makeParts(setup);
   parts.world = std::make_unique<World>(setup, std::move(simulator));
   ClosedLoop loop(setup, std::move(parts));
