@@ -93,12 +93,7 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
 
 template <class Node>
 int runNode(int argc, char** argv, const char* name) {
-  return runNode(argc, argv, name, [](StopSignal& stop) { return Node(stop).run(); });
-}
-
-template <class Node>
-int runBody(StopSignal& stop) {
-  return Node(stop).run();
+  return runNode(argc, argv, name, runNodeObject<Node, StopSignal&>);
 }
 
 using NodeBody = int (*)(StopSignal&);
@@ -106,13 +101,13 @@ using NodeBody = int (*)(StopSignal&);
 NodeBody bodyOf(const std::string& kind) {
   static const std::map<std::string, NodeBody> bodies = {
       {kTrafficSimulatorNode, runTrafficSimulator},
-      {kCbvIdentificationNode, runBody<CbvIdentificationNode>},
-      {kCameraNode, runBody<CameraNode>},
-      {kEgoPlannerNode, runBody<EgoPlannerNode>},
-      {kCbvPlannerNode, runBody<CbvPlannerNode>},
-      {kDiffusionPlannerNode, runBody<CbvPlannerNode>},
-      {kMetricsNode, runBody<MetricsNode>},
-      {kRecorderNode, runBody<RecorderNode>}};
+      {kCbvIdentificationNode, runNodeObject<CbvIdentificationNode, StopSignal&>},
+      {kCameraNode, runNodeObject<CameraNode, StopSignal&>},
+      {kEgoPlannerNode, runNodeObject<EgoPlannerNode, StopSignal&>},
+      {kCbvPlannerNode, runNodeObject<CbvPlannerNode, StopSignal&>},
+      {kDiffusionPlannerNode, runNodeObject<CbvPlannerNode, StopSignal&>},
+      {kMetricsNode, runNodeObject<MetricsNode, StopSignal&>},
+      {kRecorderNode, runNodeObject<RecorderNode, StopSignal&>}};
   const auto found = bodies.find(kind);
   if (found == bodies.end()) throw std::logic_error("no node of a session is called " + kind);
   return found->second;

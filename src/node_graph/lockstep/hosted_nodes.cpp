@@ -66,6 +66,11 @@ HostedNode::~HostedNode() {
   host().left.emplace_back(baseName(name_), exit_code_);
 }
 
+std::mutex& nodeEndMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 bool hostsNodes() {
   const std::lock_guard<std::mutex> lock(host().mutex);
   return !host().running.empty() || !host().left.empty();

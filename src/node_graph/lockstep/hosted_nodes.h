@@ -2,8 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ros/callback_queue.h"
@@ -41,6 +44,23 @@ class HostedNode {
   ros::CallbackQueue queue_;
   int exit_code_ = 0;
 };
+
+/// Held while a node's object ends. roscpp may drop the topic of a third thread where two threads
+/// end their publishers at once.
+std::mutex& nodeEndMutex();
+
+/// Makes a Node of the arguments, runs it and returns its exit code. Its object ends while no other
+/// that was made so ends in this process, also when `run` throws.
+template <class Node, class... Arguments>
+int runNodeObject(Arguments&&... arguments) {
+  const auto end = [](Node* node) {
+    const std::lock_guard<std::mutex> lock(nodeEndMutex());
+    delete node;
+  };
+  const std::unique_ptr<Node, decltype(end)> node(new Node(std::forward<Arguments>(arguments)...),
+                                                  end);
+  return node->run();
+}
 
 /// Whether the nodes of the session are threads of this process.
 bool hostsNodes();

@@ -11,6 +11,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
 #include "node_graph/lockstep/answer_waits.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/lockstep/lockstep_pacer.h"
 #include "node_graph/lockstep/wall_clock_pacer.h"
 #include "node_graph/messages/message_checks.h"
@@ -403,7 +404,7 @@ int runTrafficSimulator(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
     requireHeededLaunchArguments();
-    return TrafficSimulatorNode(parameters, stop).run();
+    return runNodeObject<TrafficSimulatorNode>(parameters, stop);
   } catch (const core::InputError&) {
     writeRefusal(parameters.text("results"));
     noteRefusal();
