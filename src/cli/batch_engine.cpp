@@ -38,6 +38,18 @@ void writeScript(const evaluation::SlurmBatch& batch, const evaluation::SlurmOpt
   folder.write("job.sh", evaluation::slurmScript(batch, options));
 }
 
+/// Ends the jobs of a batch whose submission failed. Throws an error that names them where Slurm
+/// does not.
+void cancelAfter(const std::string& name, const core::InputError& error) {
+  try {
+    evaluation::cancelJobs(name);
+  } catch (const core::InputError& other) {
+    throw core::InputError(std::string(error.what()) + "; jobs of the name " + name +
+                           " are queued and could not be ended (" + other.what() +
+                           "): end them with --cancel");
+  }
+}
+
 std::string goOnText(const fs::path& results) {
   const std::string command = "cdiff evaluate --results " + results.string();
   return "to follow them again: " + command + " --attach\nto end them: " + command + " --cancel\n";
@@ -69,12 +81,13 @@ void submitJobs(const evaluation::Executor& executor, const fs::path& results, i
   evaluation::SlurmBatch batch = batchOf(executor, results, jobs);
   batch.largest_array = evaluation::requireSlurm();
   writeScript(batch, options);
+  evaluation::writeJobName(results, batch.name, {});  // --cancel finds the jobs from the first on
   std::vector<std::string> ids;
   try {
     for (const auto& arguments : evaluation::sbatchArguments(batch, options))
       ids.push_back(evaluation::submitJob(arguments));
   } catch (const core::InputError& error) {
-    if (!ids.empty()) evaluation::cancelJobs(batch.name);
+    if (!ids.empty()) cancelAfter(batch.name, error);
     throw core::InputError(std::string(error.what()) +
                            "; nothing is queued: go on with --resume when that is mended");
   }

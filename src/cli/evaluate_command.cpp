@@ -338,7 +338,9 @@ int evaluate(const EvaluateArguments& arguments) {
 
 namespace {
 
-void addEngineOptions(CLI::App& command, EvaluateArguments& arguments) {
+/// `replaced` are the options of a batch that is to be run, which --attach and --cancel exclude.
+void addEngineOptions(CLI::App& command, EvaluateArguments& arguments,
+                      const std::vector<CLI::Option*>& replaced) {
   command
       .add_option(
           "--engine", arguments.engine,
@@ -352,10 +354,13 @@ void addEngineOptions(CLI::App& command, EvaluateArguments& arguments) {
       ->allow_extra_args(false);
   CLI::Option* attach = command.add_flag("--attach", arguments.attach,
                                          "Follow the jobs of a batch on Slurm again and sum it up");
-  command
-      .add_flag("--cancel", arguments.cancel,
-                "End the jobs of a batch on Slurm; --resume goes on with it")
-      ->excludes(attach);
+  CLI::Option* cancel = command.add_flag(
+      "--cancel", arguments.cancel, "End the jobs of a batch on Slurm; --resume goes on with it");
+  cancel->excludes(attach);
+  for (CLI::Option* option : replaced) {
+    attach->excludes(option);
+    cancel->excludes(option);
+  }
 }
 
 }  // namespace
@@ -404,14 +409,13 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
                     "Start the program for each session, instead of once for each job");
   command->footer("Planners that can attack (mode safety_critical): " +
                   core::joinText(planners::guidedPlannerNames(), ", "));
-  addEngineOptions(*command, *arguments);
   CLI::Option* resume = command->add_flag(
       "--resume", arguments->resume,
       "Run only what is not complete yet, or was run with other files or another program");
-  command
-      ->add_flag("--overwrite", arguments->overwrite,
-                 "Replace the results of an earlier batch in the folder")
-      ->excludes(resume);
+  CLI::Option* overwrite = command->add_flag(
+      "--overwrite", arguments->overwrite, "Replace the results of an earlier batch in the folder");
+  overwrite->excludes(resume);
+  addEngineOptions(*command, *arguments, {resume, overwrite});
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
 }
 

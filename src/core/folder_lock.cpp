@@ -72,7 +72,7 @@ void FolderLock::requireUnlocked(const fs::path& folder) {
 }
 
 void FolderLock::removeLeftBehind(const fs::path& folder) {
-  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;  // NFS locks no others
   const fs::path path = folder / kFile;
   const FileDescriptor file(::open(path.c_str(), kFlags));
   if (file && isLock(file.get()) && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0)

@@ -97,11 +97,12 @@ bool LeaseFolder::isLeftBehind(const fs::path& file) {
   return std::chrono::duration<double>(now - seen.since).count() > terms_.expiry;
 }
 
-/// Gives a file that is signed and locked already its name; none where the name is taken.
-FileDescriptor LeaseFolder::place(const fs::path& file) const {
+/// Gives a file that is signed and locked already its name; 0, or the reason why it has not got it.
+int LeaseFolder::placeOnce(const fs::path& file, FileDescriptor& descriptor) const {
+  makeFolder(folder_);
   std::string draft = (folder_ / ".draft.XXXXXX").string();
-  FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
-  if (!descriptor) failOn(file, "write", errno);
+  descriptor = FileDescriptor(::mkostemp(draft.data(), O_CLOEXEC));
+  if (!descriptor) return errno;
   const std::string text =
       holderSignature(terms_.program) + "boot: " + bootId() + "\nbeat: " + beatText(0);
   const bool written =
@@ -109,6 +110,15 @@ FileDescriptor LeaseFolder::place(const fs::path& file) const {
       ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
   const int reason = written ? placeUnlessThere(draft, file) : errno;
   ::unlink(draft.c_str());
+  return reason;
+}
+
+/// None where the name is taken. Another process may remove draft and folder meanwhile.
+FileDescriptor LeaseFolder::place(const fs::path& file) const {
+  constexpr int kTries = 10;
+  FileDescriptor descriptor;
+  int reason = ENOENT;
+  for (int i = 0; i < kTries && reason == ENOENT; ++i) reason = placeOnce(file, descriptor);
   if (reason != 0 && reason != EEXIST) failOn(file, "write", reason);
   return reason == 0 ? std::move(descriptor) : FileDescriptor();
 }

@@ -84,6 +84,7 @@ class LeaseFolder {
 
   std::map<std::string, Generations> list() const;
   bool isLeftBehind(const std::filesystem::path& file);
+  int placeOnce(const std::filesystem::path& file, FileDescriptor& descriptor) const;
   FileDescriptor place(const std::filesystem::path& file) const;
   void keepBeating();
   void beatAll(std::size_t number);

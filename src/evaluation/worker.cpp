@@ -156,7 +156,7 @@ class Worker {
     }
     const RunRecord record = recordAt(index);  // as it is now that nobody else writes it
     if (isDone(record)) return false;
-    if (lease->tookOver()) core::FolderLock::removeLeftBehind(folderOf(index));
+    core::FolderLock::removeLeftBehind(folderOf(index));  // of a session that was killed
     if (options_.compares_inputs) requireInputs(index, record);
     held_[index] = {std::move(lease), recordOf({record.id, record.factors, "",
                                                 record.scenario_sha256, record.inputs})};
@@ -174,7 +174,8 @@ class Worker {
     const std::string changed = changedInputs(record.inputs, now);
     if (changed.empty()) return;
     throw core::InputError("run '" + ids_[index] + "' was planned with other files: " + changed +
-                           " changed; expected the same on every host");
+                           " changed; expected the same on every host: plan it again with "
+                           "cdiff evaluate --resume");
   }
 
   /// Takes the end of an attempt; returns whether the run gets another.
@@ -185,9 +186,10 @@ class Worker {
     record.wall_seconds = end.seconds;
     describeEnd(record, end, folderOf(end.job), options_.timeout);
     const bool died = end.exit_code == ExitCode::kRunTimeError || end.exit_code > ExitCode::kSignal;
-    if (record.failed() && died && !end.timed_out && !stop_ && record.attempts <= options_.retries)
-      return true;
-    if (held.lease->isHeld()) {
+    const bool ours = held.lease->isHeld();
+    const bool again = record.failed() && died && !end.timed_out && !stop_;
+    if (ours && again && record.attempts <= options_.retries) return true;
+    if (ours) {
       core::writeOwnFile(folderOf(end.job) / "record.json", recordJson(record));
       if (options_.ended) options_.ended(record);
     } else {

@@ -191,6 +191,14 @@ TEST_F(EvaluateCommand, RefusesWrongInput) {
   expectOutput("holds no records");
 }
 
+TEST_F(EvaluateCommand, ReplacesNoBatchThatItIsToFollowOrEnd) {
+  for (const char* end : {"--attach", "--cancel"}) {
+    for (const char* run : {"--overwrite", "--resume"})
+      EXPECT_EQ(cdiff({"evaluate", "--results", folder("jobs"), end, run}), 3) << end << run;
+  }
+  EXPECT_FALSE(fs::exists(folder("jobs")));
+}
+
 TEST_F(EvaluateCommand, RefusesTheFolderOfASession) {
   fs::create_directories(folder("results"));
   write("results/session.yaml", "scenario: {}\n");

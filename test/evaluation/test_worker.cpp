@@ -107,6 +107,15 @@ TEST_F(WorkerTest, WaitsForWhatAnotherHostHasAndTakesItOverOnceItIsSilent) {
   EXPECT_FALSE(fs::exists(file("good0", ".lock")));
 }
 
+TEST_F(WorkerTest, RunsWhatAKilledSessionOfAnotherHostHadLocked) {
+  announce({"good"});
+  std::ofstream(file("good0", ".lock"))
+      << "host: other\nprocess: 1\nprogram: cdiff run\nsince: 2099-01-01 00:00:00\n";
+  work();
+  EXPECT_EQ(record("good0").status, "completed");
+  EXPECT_FALSE(fs::exists(file("good0", ".lock")));
+}
+
 TEST_F(WorkerTest, ReturnsAnInterruptedRun) {
   announce({"polite"});
   std::thread stopper([this] {
