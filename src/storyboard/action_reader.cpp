@@ -76,6 +76,7 @@ ActionWhat readAcquirePosition(const XoscElement& element, Reading& reading) {
 ActionWhat readAssignRoute(const XoscElement& element, Reading& reading) {
   const XoscElement route = reading.catalogs.resolve(element.only());
   RouteAction action;
+  if (route.flag("closed", false)) Reading::refuse(route, "a closed route");
   for (const XoscElement& waypoint : route.children("Waypoint"))
     action.waypoints.push_back(readPosition(waypoint, reading));
   if (action.waypoints.empty()) route.fail("expected at least one <Waypoint>");
@@ -100,6 +101,8 @@ ActionWhat readTrajectory(const XoscElement& element, Reading& reading) {
   const auto direct = parent.find("Trajectory");
   const XoscElement trajectory =
       direct ? *direct : reading.catalogs.entry(parent.child("CatalogReference"));
+  Reading::refuseAttributes(element, {"initialDistanceOffset"});
+  if (trajectory.flag("closed", false)) Reading::refuse(trajectory, "a closed trajectory");
   const XoscElement shape = trajectory.child("Shape").only();
   if (shape.name() != "Polyline") Reading::refuse(shape, "a trajectory of this shape");
   readTiming(element, action);
@@ -119,8 +122,12 @@ ActionWhat readDistance(const XoscElement& element, Reading&) {
   action.value = element.number(action.time_gap ? "timeGap" : "distance");
   action.freespace = element.flag("freespace", false);
   action.continuous = element.flag("continuous", false);
-  if (const auto limits = element.find("DynamicConstraints"))
+  if (element.text("displacement", "any") != "any")
+    Reading::refuse(element, "a 'displacement' other than 'any'");
+  if (const auto limits = element.find("DynamicConstraints")) {
+    Reading::refuseAttributes(*limits, {"maxDeceleration", "maxSpeed"});
     action.acceleration = limits->number("maxAcceleration", action.acceleration);
+  }
   return action;
 }
 
@@ -192,8 +199,18 @@ bool isWrapper(const std::string& name) {
   return std::find(std::begin(kWrappers), std::end(kWrappers), name) != std::end(kWrappers);
 }
 
-ActionWhat readWhat(const XoscElement& element, Reading& reading) {
-  if (isWrapper(element.name())) return readWhat(element.only(), reading);
+/// What stands inside a wrapper. Version 1.0 puts an assignment and an override into one element.
+XoscElement unwrapped(const XoscElement& wrapper) {
+  const auto assigned = wrapper.find("AssignControllerAction");
+  return wrapper.name() == "ControllerAction" && assigned ? *assigned : wrapper.only();
+}
+
+ActionWhat readWhat(XoscElement element, Reading& reading) {
+  constexpr int kDeepest = 8;
+  for (int depth = 0; isWrapper(element.name()); ++depth) {
+    if (depth == kDeepest) element.fail("elements are nested too deeply; expected an action");
+    element = unwrapped(element);
+  }
   const auto& row = rowOf(kActions, element, "this action");
   return row.read(element, reading);
 }

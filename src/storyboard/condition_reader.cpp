@@ -18,6 +18,7 @@ Rule readRule(const XoscElement& element) {
 }
 
 void readValue(const XoscElement& element, EntityCondition& condition) {
+  Reading::refuseAttributes(element, {"direction"});
   condition.rule = readRule(element);
   condition.value = element.number("value");
 }
@@ -25,13 +26,22 @@ void readValue(const XoscElement& element, EntityCondition& condition) {
 /// How a distance is measured; `relative` where its type is an attribute of the element.
 void readFrame(const XoscElement& element, EntityCondition& condition) {
   condition.freespace = element.flag("freespace", false);
-  const bool along_route = element.flag("alongRoute", false);
-  const std::string frame = element.text("coordinateSystem", along_route ? "lane" : "entity");
-  condition.lane_frame = frame != "entity";
-  const std::string type = element.text("relativeDistanceType", "");
-  if (type == "longitudinal") condition.along = Along::kLongitudinal;
-  if (type == "lateral") condition.along = Along::kLateral;
-  if (type.empty() && condition.lane_frame) condition.along = Along::kLongitudinal;
+  condition.lane_frame = element.flag("alongRoute", false);
+  if (element.has("coordinateSystem")) {
+    const std::size_t frame =
+        element.choice("coordinateSystem", {"entity", "lane", "road", "trajectory"});
+    if (frame == 3) Reading::refuse(element, "a distance along a trajectory");
+    condition.lane_frame = frame != 0;
+  }
+  if (element.has("relativeDistanceType")) {
+    constexpr Along kTypes[] = {Along::kLongitudinal, Along::kLateral, Along::kStraight,
+                                Along::kStraight};
+    condition.along =
+        kTypes[element.choice("relativeDistanceType", {"longitudinal", "lateral",
+                                                       "cartesianDistance", "euclidianDistance"})];
+  } else if (condition.lane_frame) {
+    condition.along = Along::kLongitudinal;
+  }
 }
 
 void readSpeed(const XoscElement& element, const Reading&, EntityCondition& condition) {
@@ -154,6 +164,10 @@ ConditionWhat readParameter(const XoscElement& element) {
 }
 
 ConditionWhat readElementState(const XoscElement& element) {
+  element.choice("storyboardElementType",
+                 {"story", "act", "maneuverGroup", "maneuver", "event", "action"});
+  element.choice("state", {"startTransition", "endTransition", "stopTransition", "skipTransition",
+                           "standbyState", "runningState", "completeState"});
   return ElementStateCondition{element.text("storyboardElementType"),
                                element.text("storyboardElementRef"), element.text("state")};
 }

@@ -68,6 +68,11 @@ void Reading::refuse(const XoscElement& element, const std::string& what) {
                     " is not supported; --ignore-unsupported goes on without it");
 }
 
+void Reading::refuseAttributes(const XoscElement& element, const std::vector<const char*>& keys) {
+  for (const char* key : keys)
+    if (element.has(key)) refuse(element, std::string("the attribute '") + key + "'");
+}
+
 void Reading::ignore(const Unsupported& error) {
   if (!ignore_unsupported) throw error;
   const std::string text = error.what();

@@ -45,6 +45,8 @@ struct Reading {
 
   /// Throws Unsupported.
   [[noreturn]] static void refuse(const XoscElement& element, const std::string& what);
+  /// Throws Unsupported where the element has one of these attributes.
+  static void refuseAttributes(const XoscElement& element, const std::vector<const char*>& keys);
   /// Keeps the text where what is not supported may be ignored, else throws it on.
   void ignore(const Unsupported& error);
 };

@@ -82,6 +82,12 @@ std::optional<Trigger> readTriggerOf(const XoscElement& element, const char* nam
   return readTrigger(*trigger, reading);
 }
 
+int readExecutions(const XoscElement& element) {
+  const int most = element.integer("maximumExecutionCount", 1);
+  if (most < 1) element.fail("'maximumExecutionCount' is below 1");
+  return most;
+}
+
 Event readEvent(const XoscElement& element, Reading& reading) {
   using Priority = Event::Priority;
   constexpr Priority kPriorities[] = {Priority::kOverride, Priority::kOverride, Priority::kSkip,
@@ -90,7 +96,7 @@ Event readEvent(const XoscElement& element, Reading& reading) {
   event.name = element.text("name");
   event.priority =
       kPriorities[element.choice("priority", {"overwrite", "override", "skip", "parallel"})];
-  event.executions = element.integer("maximumExecutionCount", 1);
+  event.executions = readExecutions(element);
   for (const XoscElement& action : element.children("Action"))
     event.actions.push_back(readAction(action, reading));
   event.start = readTriggerOf(element, "StartTrigger", reading);
@@ -100,7 +106,7 @@ Event readEvent(const XoscElement& element, Reading& reading) {
 ManeuverGroup readGroup(const XoscElement& element, Reading& reading) {
   ManeuverGroup group;
   group.name = element.text("name");
-  group.executions = element.integer("maximumExecutionCount", 1);
+  group.executions = readExecutions(element);
   const XoscElement actors = element.child("Actors");
   if (actors.flag("selectTriggeringEntities", false))
     Reading::refuse(actors, "the choice of triggering entities as actors");
@@ -155,7 +161,9 @@ void readInit(const XoscElement& actions, Reading& reading, Scenario& scenario) 
     const std::string entity = element.text("entityRef");
     if (scenario.find(entity) == nullptr) element.fail("there is no entity '" + entity + "'");
     for (const XoscElement& action : element.children("PrivateAction")) {
-      const auto controller = action.find("ControllerAction");
+      const auto controller = action.only().name() == "ControllerAction"
+                                  ? action.find("ControllerAction")
+                                  : std::nullopt;
       // Version 1.0 puts an assignment and an override into one element.
       const auto parts = controller ? controller->children() : std::vector<XoscElement>{action};
       for (const XoscElement& part : parts) addInit(part, entity, reading, scenario);
@@ -205,8 +213,12 @@ class NameCheck {
     if (const auto* lane = std::get_if<LaneChangeAction>(&what))
       require(lane->entity, action.source);
     if (const auto* gap = std::get_if<DistanceAction>(&what)) require(gap->entity, action.source);
-    if (const auto* entity = std::get_if<EntityAction>(&what))
+    if (const auto* entity = std::get_if<EntityAction>(&what)) {
       require(entity->entity, action.source);
+      if (entity->place) checkPlace(*entity->place);
+    }
+    if (const auto* course = std::get_if<FollowTrajectoryAction>(&what))
+      for (const TrajectoryVertex& vertex : course->vertices) checkPlace(vertex.position);
     if (const auto* teleport = std::get_if<TeleportAction>(&what)) checkPlace(teleport->to);
     if (const auto* route = std::get_if<RouteAction>(&what))
       for (const Position& waypoint : route->waypoints) checkPlace(waypoint);

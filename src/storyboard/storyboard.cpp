@@ -248,6 +248,7 @@ void Storyboard::startGroup(GroupRun& group) {
     for (EventRun& event : maneuver.events) {
       event.executions = 0;
       event.element->state = ElementState::kStandby;
+      forgetDelays(event);
       for (const ActionRun& action : event.actions) action.element->state = ElementState::kStandby;
     }
   }
@@ -256,7 +257,6 @@ void Storyboard::startGroup(GroupRun& group) {
 void Storyboard::stopGroup(GroupRun& group) {
   for (ManeuverRun& maneuver : group.maneuvers) {
     for (EventRun& event : maneuver.events) {
-      event.executions = event.event->executions;
       if (event.element->state != ElementState::kComplete) endEvent(event, kStop);
     }
     if (maneuver.element->state != ElementState::kComplete)
@@ -301,9 +301,7 @@ void Storyboard::startEvent(EventRun& event, ManeuverRun& maneuver, const GroupR
     if (other.element->state != ElementState::kRunning) continue;
     if (event.event->priority == Event::Priority::kSkip) {
       ++event.executions;
-      const bool last = event.executions >= event.event->executions;
-      enter(*event.element, last ? ElementState::kComplete : ElementState::kStandby, kSkip);
-      return;
+      return leaveEvent(event, kSkip);
     }
     if (event.event->priority == Event::Priority::kOverride) endEvent(other, kStop);
   }
@@ -322,8 +320,22 @@ void Storyboard::endEvent(EventRun& event, const char* transition) {
     if (action.element->state == ElementState::kRunning)
       enter(*action.element, ElementState::kComplete, transition);
   }
-  const bool last = event.executions >= event.event->executions;
+  leaveEvent(event, transition);
+}
+
+/// To standby where it may run again, and complete where it may not or was stopped.
+void Storyboard::leaveEvent(EventRun& event, const char* transition) {
+  const bool stopped = std::string(transition) == kStop;
+  const bool last = stopped || event.executions >= event.event->executions;
   enter(*event.element, last ? ElementState::kComplete : ElementState::kStandby, transition);
+  if (!last) forgetDelays(event);
+}
+
+/// What a delayed condition found before its event came to standby counts no more.
+void Storyboard::forgetDelays(const EventRun& event) {
+  if (!event.event->start) return;
+  for (const auto& group : event.event->start->groups)
+    for (const Condition& condition : group) memories_[&condition].values.clear();
 }
 
 }  // namespace cdiff::storyboard

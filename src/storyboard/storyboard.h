@@ -84,6 +84,8 @@ class Storyboard {
   void startGroup(GroupRun& group);
   void startEvent(EventRun& event, ManeuverRun& maneuver, const GroupRun& group);
   void endEvent(EventRun& event, const char* transition);
+  void leaveEvent(EventRun& event, const char* transition);
+  void forgetDelays(const EventRun& event);
   void stopGroup(GroupRun& group);
 
   const Scenario& scenario_;

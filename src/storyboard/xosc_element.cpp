@@ -19,17 +19,24 @@ struct XoscElement::Document {
   std::string text;
   pugi::xml_document tree;
 
+  std::vector<std::ptrdiff_t> line_ends;  ///< offsets of the text's line breaks
+
+  void read(const std::string& name) {
+    constexpr std::uintmax_t kLargest = std::uintmax_t{64} << 20;  // [bytes]
+    file = name;
+    text = core::readFile(name, "OpenSCENARIO file", kLargest);
+    for (std::size_t i = 0; i < text.size(); ++i)
+      if (text[i] == '\n') line_ends.push_back(static_cast<std::ptrdiff_t>(i));
+  }
   int lineAt(std::ptrdiff_t offset) const {
-    const auto end = std::clamp<std::ptrdiff_t>(offset, 0, std::ptrdiff_t(text.size()));
-    return 1 + int(std::count(text.begin(), text.begin() + end, '\n'));
+    const auto line = std::lower_bound(line_ends.begin(), line_ends.end(), offset);
+    return 1 + static_cast<int>(line - line_ends.begin());
   }
 };
 
 XoscElement XoscElement::load(const std::string& file) {
-  constexpr std::uintmax_t kLargest = std::uintmax_t{64} << 20;  // [bytes]
   auto document = std::make_shared<Document>();
-  document->file = file;
-  document->text = core::readFile(file, "OpenSCENARIO file", kLargest);
+  document->read(file);
   const std::size_t doctype = document->text.find("<!DOCTYPE");
   if (doctype != std::string::npos) {
     throw InputError(file + ":" + std::to_string(document->lineAt(std::ptrdiff_t(doctype))) +
@@ -139,6 +146,7 @@ XoscElement XoscElement::child(const char* name) const {
 XoscElement XoscElement::only() const {
   const std::vector<XoscElement> elements = children();
   if (elements.empty()) fail("an element inside it is missing");
+  if (elements.size() > 1) elements[1].fail("one element was expected inside <" + name() + ">");
   return elements.front();
 }
 

@@ -46,7 +46,7 @@ class XoscElement {
   std::optional<XoscElement> find(const char* name) const;
   /// Must be there.
   XoscElement child(const char* name) const;
-  /// The one child element, whatever its name.
+  /// The one child element, whatever its name. Throws InputError where there are none or more.
   XoscElement only() const;
 
   const Parameters& parameters() const { return *parameters_; }

@@ -139,6 +139,55 @@ TEST_F(ScenarioReader, WhatIsNotSupportedIsRefusedOrListed) {
   EXPECT_TRUE(std::holds_alternative<NoAction>(read.init[0].action.what));
 }
 
+TEST_F(ScenarioReader, DeepNestingIsRefusedWithItsLine) {
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) deep += "<PrivateAction>";
+  for (int i = 0; i < 100000; ++i) deep += "</PrivateAction>";
+  expectText(errorIn(scenario(privateAction(deep))),
+             ":11: <PrivateAction>: elements are nested too deeply");
+}
+
+TEST_F(ScenarioReader, ASecondActionInOneElementIsRefused) {
+  const std::string file = scenario(privateAction("<LateralAction/>\n<RoutingAction/>"));
+  expectText(errorIn(file), file + ":12: <RoutingAction>: one element was expected");
+}
+
+TEST_F(ScenarioReader, UnknownWordsOfConditionsAreRefused) {
+  const auto errorOf = [&](const std::string& condition) {
+    return errorIn(scenario("", "", "",
+                            "<StopTrigger><ConditionGroup><Condition conditionEdge=\"none\">" +
+                                condition + "</Condition></ConditionGroup></StopTrigger>"));
+  };
+  const auto byEntity = [&](const std::string& condition) {
+    return errorOf(
+        "<ByEntityCondition><TriggeringEntities triggeringEntitiesRule=\"any\"><EntityRef "
+        "entityRef=\"Ego\"/></TriggeringEntities><EntityCondition>" +
+        condition + "</EntityCondition></ByEntityCondition>");
+  };
+  const std::string distance =
+      "<RelativeDistanceCondition entityRef=\"Ego\" value=\"1\" rule=\"lessThan\" ";
+  expectText(errorOf("<ByValueCondition><StoryboardElementStateCondition state=\"runing\" "
+                     "storyboardElementType=\"act\" storyboardElementRef=\"a\"/>"
+                     "</ByValueCondition>"),
+             "'state' is 'runing'; expected one of");
+  expectText(byEntity(distance + "relativeDistanceType=\"long\"/>"), "'relativeDistanceType'");
+  expectText(byEntity(distance + "coordinateSystem=\"lanes\"/>"), "'coordinateSystem'");
+  expectText(byEntity("<SpeedCondition value=\"1\" rule=\"lessThan\" direction=\"lateral\"/>"),
+             ":11: <SpeedCondition>: the attribute 'direction' is not supported");
+}
+
+TEST_F(ScenarioReader, NobodyInAVertexIsNamedBeforeAnythingRuns) {
+  const std::string vertex =
+      "<Vertex time=\"0\"><Position><RelativeObjectPosition entityRef=\"nobody\" dx=\"1\" "
+      "dy=\"0\"/></Position></Vertex>";
+  const std::string file = scenario(privateAction(
+      "<RoutingAction><FollowTrajectoryAction><Trajectory name=\"t\" closed=\"false\"><Shape>"
+      "<Polyline>" +
+      vertex + vertex +
+      "</Polyline></Shape></Trajectory></FollowTrajectoryAction></RoutingAction>"));
+  expectText(errorIn(file), "there is no entity 'nobody'");
+}
+
 TEST_F(ScenarioReader, CarlasCoordinatesAreMirrored) {
   const std::string file = scenario(privateAction(
       "<TeleportAction><Position><WorldPosition x=\"1\" y=\"2\" h=\"0.5\"/></Position>"

@@ -148,6 +148,34 @@ TEST(Storyboard, ADelayIsCountedFromTheRise) {
   EXPECT_EQ(stage.begun.size(), 1U);
 }
 
+TEST(Storyboard, AnEventThatIsOverriddenRunsNoMore) {
+  const Scenario scenario = scenarioOf({event("first", when("a"), Event::Priority::kParallel, 2),
+                                        event("second", when("b"), Event::Priority::kOverride)});
+  ScriptedStage stage;
+  Storyboard board(scenario, stage);
+  stage.truth["a"] = true;
+  board.update(0.0);
+  stage.truth["b"] = true;
+  board.update(0.1);
+  board.update(0.2);
+  EXPECT_EQ(board.state("event", "first"), ElementState::kComplete);
+  EXPECT_EQ(stage.begun, (std::vector<std::string>{"act_of_first", "act_of_second"}));
+}
+
+TEST(Storyboard, ADelayCountsFromStandbyOn) {
+  const Scenario scenario = scenarioOf(
+      {event("twice", when("go", Condition::Edge::kNone, 0.2), Event::Priority::kParallel, 2)});
+  ScriptedStage stage;
+  Storyboard board(scenario, stage);
+  stage.truth["go"] = true;
+  for (const double time : {0.0, 0.1, 0.2}) board.update(time);
+  ASSERT_EQ(stage.begun.size(), 1U);
+  stage.truth["go"] = false;
+  stage.performing["act_of_twice"]->over = true;
+  for (const double time : {0.3, 0.4, 0.5, 0.6}) board.update(time);
+  EXPECT_EQ(stage.begun.size(), 1U);
+}
+
 TEST(Storyboard, AGroupNeedsAllOfItsConditionsAndATriggerOneGroup) {
   Trigger trigger = when("a");
   trigger.groups[0].push_back(when("b").groups[0][0]);
