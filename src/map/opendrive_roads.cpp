@@ -82,7 +82,15 @@ double valueOf(const std::vector<Cubic>& pieces, double s) {
   return value;
 }
 
-/// Integrates the heading of a line, an arc or a spiral by Simpson's rule.
+/// Along a line or an arc.
+Pose2d alongArc(const Piece& piece, double distance) {
+  const double half = 0.5 * distance * piece.first_curvature;  // of the turn
+  const double chord = std::abs(half) < 1e-9 ? distance : distance * std::sin(half) / half;
+  return {piece.start.position + chord * geometry::direction(piece.start.heading + half),
+          piece.start.heading + 2.0 * half};
+}
+
+/// Integrates the heading of a spiral by Simpson's rule.
 Pose2d alongSpiral(const Piece& piece, double distance) {
   constexpr double kStep = 0.5;  // [m]
   const double change = (piece.last_curvature - piece.first_curvature) / (2.0 * piece.length);
@@ -106,7 +114,8 @@ Pose2d alongSpiral(const Piece& piece, double distance) {
 }  // namespace
 
 Pose2d opendrive::Piece::at(double distance) const {
-  if (!polynomial) return alongSpiral(*this, distance);
+  const bool spiral = first_curvature != last_curvature;
+  if (!polynomial) return spiral ? alongSpiral(*this, distance) : alongArc(*this, distance);
   const double p = distance * scale;
   const auto slope = [&](const Cubic& cubic) {
     return cubic.b + p * (2.0 * cubic.c + p * 3.0 * cubic.e);

@@ -40,14 +40,23 @@ double Transition::value() const {
 
 void Actor::takeRoute(std::shared_ptr<const map::Route> route) {
   route_ = std::move(route);
+  route_ends_ = false;
   if (!route_) return;
   const geometry::Projection here = route_->path().project(reference_.pose.position);
   arc_length_ = here.arc_length;
   offset_ = route_->path().extendedPoseAt(arc_length_).toBody(reference_.pose.position).y();
 }
 
+void Actor::leave() {
+  trajectory_.reset();
+  offset_change_.reset();
+  speed_change_.reset();
+  wanted_speed_ = nullptr;
+  finish(lateral_);
+  finish(longitudinal_);
+}
+
 void Actor::place(const MapPose& place) {
-  if (trajectory_) finish(trajectory_->performing);
   trajectory_.reset();
   offset_change_.reset();
   finish(lateral_);
@@ -62,9 +71,16 @@ void Actor::resume(const traffic::VehicleState& state) {
   place({{pose.toMap(-entity_.center), pose.heading}, state.elevation});
 }
 
-void Actor::setSpeed(const Dynamics& dynamics, double speed, const Performing& performing) {
+/// A new action on the speed ends the one before, and a trajectory with times.
+void Actor::startSpeed(const Performing& performing) {
+  if (trajectory_ && !trajectory_->times.empty()) endTrajectory();
   replace(longitudinal_, performing);
+  speed_change_.reset();
   wanted_speed_ = nullptr;
+}
+
+void Actor::setSpeed(const Dynamics& dynamics, double speed, const Performing& performing) {
+  startSpeed(performing);
   double extent = extentOf(dynamics, speed - speed_);
   if (dynamics.dimension == Dynamics::Dimension::kDistance)
     extent = 2.0 * extent / std::max(0.1, speed + speed_);
@@ -75,13 +91,12 @@ void Actor::setSpeed(const Dynamics& dynamics, double speed, const Performing& p
   finish(longitudinal_);
 }
 
-void Actor::adaptSpeed(std::function<double()> wanted, double acceleration, bool continuous,
-                       const Performing& performing) {
-  replace(longitudinal_, performing);
-  speed_change_.reset();
+void Actor::adaptSpeed(std::function<double()> wanted, double acceleration,
+                       std::function<bool()> reached, const Performing& performing) {
+  startSpeed(performing);
   wanted_speed_ = std::move(wanted);
   adapting_acceleration_ = acceleration;
-  adapting_always_ = continuous;
+  speed_reached_ = std::move(reached);
 }
 
 void Actor::startOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
@@ -92,21 +107,23 @@ void Actor::startOffset(const Dynamics& dynamics, double offset, const Performin
                               by_distance);
 }
 
-void Actor::changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle, double offset,
-                       const Performing& performing) {
+void Actor::changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle,
+                       const Eigen::Vector2d& target, const Performing& performing) {
+  if (trajectory_) endTrajectory();
   // A lane of the same direction becomes the route; beside others one drives off the route.
-  const MapPose target{{lane_middle, reference_.pose.heading}, reference_.elevation};
-  const auto route = places_.routeFrom(target);
+  const MapPose middle{{lane_middle, reference_.pose.heading}, reference_.elevation};
+  const auto route = places_.routeFrom(middle);
   if (route) takeRoute(std::make_shared<const map::Route>(*route));
-  const double middle = route_ ? route_->path().project(lane_middle).lateral_offset : 0.0;
-  startOffset(dynamics, middle + offset, performing);
+  startOffset(dynamics, route_ ? route_->path().project(target).lateral_offset : 0.0, performing);
 }
 
 void Actor::setOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
+  if (trajectory_) endTrajectory();
   startOffset(dynamics, offset, performing);
 }
 
 void Actor::setRoute(map::Route route) {
+  if (trajectory_) endTrajectory();
   takeRoute(std::make_shared<const map::Route>(std::move(route)));
 }
 
@@ -114,12 +131,9 @@ void Actor::follow(std::vector<MapPose> places, std::vector<double> times,
                    const Performing& performing) {
   replace(lateral_, performing);
   offset_change_.reset();
+  trajectory_.reset();
   const bool timed = !times.empty();
-  if (timed) {
-    replace(longitudinal_, nullptr);
-    speed_change_.reset();
-    wanted_speed_ = nullptr;
-  }
+  if (timed) startSpeed(nullptr);
   std::vector<Eigen::Vector3d> points;
   for (const MapPose& place : places)
     points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
@@ -140,11 +154,9 @@ void Actor::changeSpeed(double step) {
     speed_change_.reset();
     finish(longitudinal_);
   } else if (wanted_speed_) {
-    constexpr double kReached = 0.01;  // [m/s]
     const double most = adapting_acceleration_ * step;
-    const double difference = wanted_speed_() - speed_;
-    speed_ = std::max(0.0, speed_ + std::clamp(difference, -most, most));
-    if (adapting_always_ || std::abs(difference) > kReached) return;
+    speed_ = std::max(0.0, speed_ + std::clamp(wanted_speed_() - speed_, -most, most));
+    if (!speed_reached_ || !speed_reached_()) return;
     wanted_speed_ = nullptr;
     finish(longitudinal_);
   }
@@ -154,7 +166,18 @@ void Actor::advanceStraight(double meters) {
   reference_.pose.position += meters * geometry::direction(reference_.pose.heading);
 }
 
+/// Routes have a largest length; where less than this is left, they go on.
+void Actor::prolongRoute() {
+  constexpr double kLeast = 100.0;  // [m]
+  const double length = route_->path().length();
+  if (route_ends_ || length - arc_length_ >= kLeast) return;
+  const auto longer = std::make_shared<const map::Route>(places_.prolonged(*route_));
+  route_ends_ = longer->path().length() < length + kLeast;
+  if (!route_ends_) route_ = longer;
+}
+
 void Actor::advanceOnLanes(double meters, double step) {
+  prolongRoute();
   const geometry::Polyline& path = route_->path();
   const double before = offset_;
   if (arc_length_ + meters >= path.length()) {  // where the network ends one stops

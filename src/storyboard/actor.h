@@ -53,16 +53,19 @@ class Actor {
 
   /// Puts its reference point somewhere; it goes on along the lane there.
   void place(const MapPose& place);
+  /// Ends all that it performs, because somebody else drives it.
+  void leave();
   /// Takes it from where somebody else drove it.
   void resume(const traffic::VehicleState& state);
   /// Each of these replaces the action before it in the same domain.
   void setSpeed(const Dynamics& dynamics, double speed, const Performing& performing);
-  /// Keeps the speed that `wanted` says, changed by at most `acceleration` [m/s^2]; over at once
-  /// where it is not continuous and reached.
-  void adaptSpeed(std::function<double()> wanted, double acceleration, bool continuous,
-                  const Performing& performing);
-  void changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle, double offset,
-                  const Performing& performing);
+  /// Keeps the speed that `wanted` says, changed by at most `acceleration` [m/s^2], until `reached`
+  /// says so; always where it is nullptr.
+  void adaptSpeed(std::function<double()> wanted, double acceleration,
+                  std::function<bool()> reached, const Performing& performing);
+  /// `target`: where it ends abreast, in or beside the middle of that lane.
+  void changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle,
+                  const Eigen::Vector2d& target, const Performing& performing);
   void setOffset(const Dynamics& dynamics, double offset, const Performing& performing);
   void setRoute(map::Route route);
   /// `times` [s] of simulated time, one for each place, or none.
@@ -90,6 +93,8 @@ class Actor {
   };
   void takeRoute(std::shared_ptr<const map::Route> route);
   void startOffset(const Dynamics& dynamics, double offset, const Performing& performing);
+  void startSpeed(const Performing& performing);
+  void prolongRoute();
   void changeSpeed(double step);
   void advanceOnLanes(double meters, double step);
   void advanceStraight(double meters);
@@ -102,12 +107,13 @@ class Actor {
   double speed_ = 0.0;
   double acceleration_ = 0.0;
   std::shared_ptr<const map::Route> route_;
+  bool route_ends_ = false;  ///< with the network
   double arc_length_ = 0.0;
   double offset_ = 0.0;  ///< to the left of the route [m]
   std::optional<Transition> speed_change_;
   std::function<double()> wanted_speed_;
   double adapting_acceleration_ = 0.0;
-  bool adapting_always_ = false;
+  std::function<bool()> speed_reached_;
   std::optional<Transition> offset_change_;
   std::optional<Trajectory> trajectory_;
   Performing longitudinal_;

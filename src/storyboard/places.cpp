@@ -178,11 +178,11 @@ MapPose Places::resolve(const Position& position, const PoseOf& pose_of) const {
 }
 
 Eigen::Vector2d Places::laneTarget(const LaneChangeAction& change, const MapPose& self,
-                                   const MapPose& reference) const {
+                                   const MapPose& reference, double offset) const {
   const map::RoadPlace own = roadPlace(self);
   const int lane =
       change.entity.empty() ? change.lane : laneBeside(roadPlace(reference).lane, change.lane);
-  return lanePose(own.road, lane, own.s, 0.0).pose.position;
+  return lanePose(own.road, lane, own.s, offset).pose.position;
 }
 
 std::optional<map::Route> Places::routeFrom(const MapPose& place) const {
@@ -193,6 +193,10 @@ std::optional<map::Route> Places::routeFrom(const MapPose& place) const {
   const double start = std::clamp(found->arc_length, 0.0, std::max(0.0, length - kShortest));
   return graph_.extended(graph_.toRoute({{found->lane}, length - start}, start, length),
                          kRouteLength);
+}
+
+map::Route Places::prolonged(const map::Route& route) const {
+  return graph_.extended(route, route.length() + kRouteLength);
 }
 
 map::Route Places::routeThrough(const MapPose& place, std::vector<Eigen::Vector3d> points) const {

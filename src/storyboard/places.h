@@ -32,13 +32,16 @@ class Places {
   /// its own a position on a lane has that of the lane. Throws InputError with file and line for a
   /// road, a lane or a place that is not there.
   MapPose resolve(const Position& position, const PoseOf& pose_of) const;
-  /// The middle of the lane that a lane change leads to, abreast of `self`. Throws InputError
-  /// for a lane that is not there, without a place in the file.
+  /// Where a lane change leads to, abreast of `self`: `offset` [m] to the left of the road from the
+  /// middle of the lane. Throws InputError for a lane that is not there, without a place in the
+  /// file.
   Eigen::Vector2d laneTarget(const LaneChangeAction& change, const MapPose& self,
-                             const MapPose& reference) const;
+                             const MapPose& reference, double offset) const;
   /// The route along lanes from a place on, straight on where it can; nullopt off every lane of
   /// about that heading.
   std::optional<map::Route> routeFrom(const MapPose& place) const;
+  /// The route and what follows, straight on where it can; the same where the network ends.
+  map::Route prolonged(const map::Route& route) const;
   /// The route from a place through points in the map frame. Throws InputError.
   map::Route routeThrough(const MapPose& place, std::vector<Eigen::Vector3d> points) const;
   /// Heading of the nearest lane, or that of the place off every lane.

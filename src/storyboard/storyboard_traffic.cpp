@@ -23,6 +23,13 @@ bool StoryboardTraffic::isOurs(const std::string& id) const {
   return id != traffic::kEgoId && play_.scenario.find(id) != nullptr;
 }
 
+void StoryboardTraffic::addDriven(const std::string& id,
+                                  const traffic::VehicleDimensions& dimensions,
+                                  const DrivenVehicle& start) {
+  if (id == traffic::kEgoId) stage_.setDimensions(play_.ego, dimensions);
+  traffic_->addDriven(id, dimensions, start);
+}
+
 void StoryboardTraffic::takeOver(const std::string& id) {
   if (!isOurs(id)) return traffic_->takeOver(id);
   taken_.insert(id);
@@ -49,9 +56,9 @@ void StoryboardTraffic::remove(const std::string& id) {
 void StoryboardTraffic::observe(const std::vector<DrivenVehicle>& driven) {
   for (const DrivenVehicle& vehicle : driven) {
     if (vehicle.id == traffic::kEgoId) {
-      stage_.observe(play_.ego, vehicle.state, vehicle.route);
+      stage_.observe(play_.ego, vehicle.state, vehicle.route, step_);
     } else if (taken_.count(vehicle.id) != 0) {
-      stage_.observe(vehicle.id, vehicle.state, vehicle.route);
+      stage_.observe(vehicle.id, vehicle.state, vehicle.route, step_);
     }
   }
 }

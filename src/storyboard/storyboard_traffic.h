@@ -35,9 +35,7 @@ class StoryboardTraffic : public simulation::TrafficSimulator {
                     double step);
 
   void addDriven(const std::string& id, const traffic::VehicleDimensions& dimensions,
-                 const simulation::DrivenVehicle& start) override {
-    traffic_->addDriven(id, dimensions, start);
-  }
+                 const simulation::DrivenVehicle& start) override;
   void takeOver(const std::string& id) override;
   bool release(const simulation::DrivenVehicle& vehicle) override;
   bool addBackground(const std::string& id, const std::vector<std::string>& edges,

@@ -57,16 +57,18 @@ TrafficStage::TrafficStage(const Scenario& scenario, const Places& places,
       pose_of_([this](const std::string& entity) { return poseOf(entity); }),
       planned_(std::move(planned)),
       parameters_(scenario.parameters) {
-  for (const Entity& entity : scenario.entities)
+  for (const Entity& entity : scenario.entities) {
     actors_[entity.name].actor = std::make_unique<Actor>(entity, places);
+    actors_[entity.name].dimensions = entity.dimensions;
+  }
 }
 
 void TrafficStage::begin() {
-  for (const InitAction& init : scenario_.init) {
-    if (init.entity.empty()) {
-      performGlobal(init.action);
-    } else {
-      begin(init.action, {init.entity}, 0.0);
+  for (const bool places : {true, false}) {  // entities are there before anything else happens
+    for (const InitAction& init : scenario_.init) {
+      if (std::holds_alternative<TeleportAction>(init.action.what) != places) continue;
+      const std::vector<std::string> actors(init.entity.empty() ? 0 : 1, init.entity);
+      begin(init.action, actors, 0.0);
     }
   }
 }
@@ -80,7 +82,7 @@ MapPose TrafficStage::poseOf(const std::string& entity) const {
 
 geometry::OrientedBox TrafficStage::boxOf(const std::string& entity) const {
   const Member& known = member(entity);
-  const traffic::VehicleDimensions& size = known.actor->entity().dimensions;
+  const traffic::VehicleDimensions& size = known.dimensions;
   return {known.state.position, known.state.heading, size.length, size.width};
 }
 
@@ -142,17 +144,29 @@ double TrafficStage::timeToCollision(const EntityCondition& condition,
   return closing > 1e-3 ? distance(condition, entity) / closing : kNever;
 }
 
+bool TrafficStage::touch(const std::string& first, const std::string& second) const {
+  return first != second &&
+         !traffic::onDifferentLevels(member(first).state.elevation,
+                                     member(second).state.elevation) &&
+         geometry::overlap(boxOf(first), boxOf(second));
+}
+
 bool TrafficStage::collides(const EntityCondition& condition, const std::string& entity) const {
-  for (const std::string& other : present_) {
-    if (other == entity || (!condition.other.empty() && other != condition.other)) continue;
-    if (traffic::onDifferentLevels(member(entity).state.elevation, member(other).state.elevation))
-      continue;
-    if (geometry::overlap(boxOf(entity), boxOf(other))) return true;
-  }
-  return false;
+  const auto meant = [&](const std::string& other) {
+    return condition.other.empty() || other == condition.other;
+  };
+  const auto touched = touched_.find(entity);
+  if (touched != touched_.end() &&
+      std::any_of(touched->second.begin(), touched->second.end(), meant))
+    return true;
+  return present(entity) &&
+         std::any_of(present_.begin(), present_.end(), [&](const std::string& other) {
+           return meant(other) && touch(entity, other);
+         });
 }
 
 bool TrafficStage::measured(const EntityCondition& condition, const std::string& entity) const {
+  if (condition.measure == Measure::kCollision) return collides(condition, entity);
   if (!present(entity)) return false;
   for (const std::string& other : {condition.other, condition.place ? condition.place->entity : ""})
     if (!other.empty() && !present(other)) return false;
@@ -181,7 +195,7 @@ bool TrafficStage::measured(const EntityCondition& condition, const std::string&
     case Measure::kCollision:
       break;
   }
-  return collides(condition, entity);
+  return false;
 }
 
 bool TrafficStage::holds(const Condition& condition, double time) {
@@ -243,7 +257,7 @@ void TrafficStage::perform(const SpeedAction& action, Actor& actor,
   if (!action.continuous) return actor.setSpeed(action.dynamics, wanted(), performing);
   constexpr double kUsual = 10.0;  // [m/s^2]
   const bool rate = action.dynamics.dimension == Dynamics::Dimension::kRate;
-  actor.adaptSpeed(wanted, rate ? action.dynamics.value : kUsual, true, performing);
+  actor.adaptSpeed(wanted, rate ? action.dynamics.value : kUsual, nullptr, performing);
 }
 
 void TrafficStage::perform(const DistanceAction& action, Actor& actor,
@@ -254,22 +268,33 @@ void TrafficStage::perform(const DistanceAction& action, Actor& actor,
   gap.freespace = action.freespace;
   gap.along = Along::kLongitudinal;
   const std::string self = actor.entity().name;
-  const auto wanted = [this, gap, action, self] {
-    const Member& own = member(self);
-    const Member& other = member(action.entity);
-    const bool behind = own.reference.pose.toBody(other.reference.pose.position).x() > 0.0;
-    const double target = action.time_gap ? action.value * own.state.speed : action.value;
-    const double excess = (distance(gap, self) - target) * (behind ? 1.0 : -1.0);
-    return std::max(0.0, other.state.speed + kGain * excess);
+  const auto excess = [this, gap, action, self] {  // of the distance [m]
+    const double target = action.time_gap ? action.value * member(self).state.speed : action.value;
+    return distance(gap, self) - target;
   };
-  actor.adaptSpeed(wanted, action.acceleration, action.continuous, performing);
+  const auto wanted = [this, excess, action, self] {
+    const Member& other = member(action.entity);
+    const bool behind = member(self).reference.pose.toBody(other.reference.pose.position).x() > 0.0;
+    return std::max(0.0, other.state.speed + kGain * excess() * (behind ? 1.0 : -1.0));
+  };
+  std::function<bool()> reached;
+  if (!action.continuous) {
+    reached = [this, excess, action, self] {
+      constexpr double kNear = 0.1;  // [m] and [m/s]
+      const double closing = member(self).state.speed - member(action.entity).state.speed;
+      return std::abs(excess()) < kNear && std::abs(closing) < kNear;
+    };
+  }
+  actor.adaptSpeed(wanted, action.acceleration, reached, performing);
 }
 
 void TrafficStage::perform(const LaneChangeAction& action, Actor& actor,
                            const Actor::Performing& performing) {
   const MapPose reference = action.entity.empty() ? actor.reference() : poseOf(action.entity);
-  const Eigen::Vector2d middle = places_.laneTarget(action, actor.reference(), reference);
-  actor.changeLane(action.dynamics, middle, action.offset, performing);
+  const auto target = [&](double offset) {
+    return places_.laneTarget(action, actor.reference(), reference, offset);
+  };
+  actor.changeLane(action.dynamics, target(0.0), target(action.offset), performing);
 }
 
 void TrafficStage::perform(const FollowTrajectoryAction& action, double time, Actor& actor,
@@ -357,29 +382,48 @@ std::vector<std::shared_ptr<Performance>> TrafficStage::start(
 // What moves.
 
 void TrafficStage::measure(Member& known, const traffic::VehicleState& before, double step) const {
+  known.acceleration = (known.state.speed - before.speed) / step;
   known.traveled += (known.state.position - before.position).norm();
   known.standing = known.state.speed < 0.05 ? known.standing + step : 0.0;
 }
 
 void TrafficStage::observe(const std::string& entity, const traffic::VehicleState& state,
-                           const map::Route* route) {
+                           const map::Route* route, double step) {
   Member& known = actors_.at(entity);
   const geometry::Pose2d pose = state.pose();
+  const traffic::VehicleState before = known.state;
   known.state = state;
   known.reference = {{pose.toMap(-known.actor->entity().center), pose.heading}, state.elevation};
   known.planned_route = route;
-  present_.insert(entity);
+  if (!present_.insert(entity).second) measure(known, before, step);
+}
+
+void TrafficStage::setDimensions(const std::string& entity,
+                                 const traffic::VehicleDimensions& dimensions) {
+  actors_.at(entity).dimensions = dimensions;
+}
+
+void TrafficStage::remove(const std::string& entity) {
+  if (!present(entity)) return;
+  for (const std::string& other : present_) {
+    if (!touch(entity, other)) continue;
+    touched_[entity].insert(other);
+    touched_[other].insert(entity);
+  }
+  present_.erase(entity);
 }
 
 void TrafficStage::setPlanned(const std::string& entity, bool planned) {
   if (planned) {
     planned_.insert(entity);
+    actors_.at(entity).actor->leave();
   } else if (planned_.erase(entity) > 0) {
     actors_.at(entity).actor->resume(member(entity).state);
   }
 }
 
 void TrafficStage::advance(double time, double step) {
+  touched_.clear();
   for (const std::string& entity : present_) {
     if (planned_.count(entity) != 0) continue;
     Member& known = actors_.at(entity);
@@ -387,7 +431,6 @@ void TrafficStage::advance(double time, double step) {
     known.actor->advance(time, step);
     known.state = known.actor->state();
     known.reference = known.actor->reference();
-    known.acceleration = known.actor->acceleration();
     measure(known, before, step);
   }
 }

@@ -31,14 +31,17 @@ class TrafficStage : public Stage {
                                                   double time) override;
 
   /// Says where a planner has its entity, given by the center of its box, and along which route it
-  /// drives (nullptr: none; must live until the next call).
+  /// drives (nullptr: none; must live until the next call), `step` seconds after the call before.
   void observe(const std::string& entity, const traffic::VehicleState& state,
-               const map::Route* route);
+               const map::Route* route, double step);
+  /// The size that an entity has in the session, where it is another one than in the file.
+  void setDimensions(const std::string& entity, const traffic::VehicleDimensions& dimensions);
   /// A planner drives the entity from now on, or no more.
   void setPlanned(const std::string& entity, bool planned);
   /// Moves what the storyboard moves to `time`, and measures what conditions need.
   void advance(double time, double step);
-  void remove(const std::string& entity) { present_.erase(entity); }
+  /// Takes the entity away. Conditions on collisions know until the next move whom it touched.
+  void remove(const std::string& entity);
 
   /// Names of the entities that are there and that the storyboard moves.
   std::vector<std::string> moved() const;
@@ -50,6 +53,7 @@ class TrafficStage : public Stage {
   /// An entity, and what is measured of it.
   struct Member {
     std::unique_ptr<Actor> actor;
+    traffic::VehicleDimensions dimensions;
     traffic::VehicleState state;
     MapPose reference;
     double acceleration = 0.0;
@@ -68,6 +72,7 @@ class TrafficStage : public Stage {
                        const Eigen::Vector2d& target) const;
   double timeToCollision(const EntityCondition& condition, const std::string& entity) const;
   Eigen::Vector2d velocityOf(const std::string& entity) const;
+  bool touch(const std::string& first, const std::string& second) const;
   bool collides(const EntityCondition& condition, const std::string& entity) const;
   std::vector<std::shared_ptr<Performance>> start(const Action& action,
                                                   const std::vector<std::string>& actors,
@@ -91,6 +96,7 @@ class TrafficStage : public Stage {
   std::map<std::string, Member> actors_;
   std::set<std::string> planned_;
   std::set<std::string> present_;
+  std::map<std::string, std::set<std::string>> touched_;  ///< those removed, and whom they touched
   std::map<std::string, std::string> parameters_;
 };
 

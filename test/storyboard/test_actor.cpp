@@ -59,7 +59,7 @@ TEST_F(StoryboardActor, ALaneChangeIsHalfDoneInHalfItsTime) {
   actor_.setSpeed({}, 10.0, std::make_shared<Performance>());
   const auto performing = std::make_shared<Performance>();
   actor_.changeLane(over(Dynamics::Shape::kSinusoidal, Dynamics::Dimension::kTime, 4.0),
-                    {10.0, -1.75}, 0.0, performing);
+                    {10.0, -1.75}, {10.0, -1.75}, performing);
   drive(2.0);
   EXPECT_NEAR(actor_.reference().pose.position.y(), -3.5, 1e-6);
   EXPECT_GT(actor_.reference().pose.heading, 0.05);
@@ -98,6 +98,59 @@ TEST_F(StoryboardActor, AStoppedActionKeepsTheSpeedReached) {
   performing->stopped = true;
   drive(1.0);
   EXPECT_NEAR(actor_.speed(), 2.0, 1e-9);
+}
+
+TEST_F(StoryboardActor, ALaneChangeEndsATrajectory) {
+  actor_.setSpeed({}, 10.0, std::make_shared<Performance>());
+  const auto course = std::make_shared<Performance>();
+  actor_.follow({{{{10.0, -5.25}, 0.0}, 0.0}, {{{400.0, -5.25}, 0.0}, 0.0}}, {}, course);
+  drive(1.0);
+  actor_.changeLane(over(Dynamics::Shape::kLinear, Dynamics::Dimension::kTime, 2.0), {20.0, -1.75},
+                    {20.0, -1.75}, std::make_shared<Performance>());
+  EXPECT_TRUE(course->over);
+  drive(3.0);
+  EXPECT_NEAR(actor_.reference().pose.position.y(), -1.75, 1e-6);
+}
+
+TEST_F(StoryboardActor, ASpeedActionEndsATrajectoryWithTimes) {
+  const auto course = std::make_shared<Performance>();
+  actor_.follow({{{{10.0, -5.25}, 0.0}, 0.0}, {{{400.0, -5.25}, 0.0}, 0.0}}, {0.0, 10.0}, course);
+  drive(1.0);
+  actor_.setSpeed({}, 5.0, std::make_shared<Performance>());
+  EXPECT_TRUE(course->over);
+  drive(1.0);
+  EXPECT_NEAR(actor_.reference().pose.position.x(), 54.0, 1e-6);  // 39 m in 1 s, then 5 m
+}
+
+TEST_F(StoryboardActor, AfterAPlannerItKeepsThePlannersSpeed) {
+  const auto performing = std::make_shared<Performance>();
+  actor_.setSpeed(over(Dynamics::Shape::kLinear, Dynamics::Dimension::kRate, 1.0), 20.0,
+                  performing);
+  actor_.leave();
+  EXPECT_TRUE(performing->over);
+  traffic::VehicleState state = actor_.state();
+  state.speed = 7.0;
+  actor_.resume(state);
+  drive(1.0);
+  EXPECT_EQ(actor_.speed(), 7.0);
+}
+
+TEST_F(StoryboardActor, ItDrivesOnBeyondTheLongestRoute) {
+  test::TemporaryFolder folder;
+  const test::SumoNetwork net = test::makeSumoNetwork(
+      folder,
+      R"(<node id="a" x="0" y="0"/><node id="b" x="1500" y="0"/><node id="c" x="3000" y="0"/>
+<node id="d" x="4500" y="0"/>)",
+      R"(<edge id="e" from="a" to="b" numLanes="1" speed="50"/>
+<edge id="f" from="b" to="c" numLanes="1" speed="50"/>
+<edge id="g" from="c" to="d" numLanes="1" speed="50"/>)");
+  const map::LaneGraph graph(net.network);
+  const Places places(graph, std::nullopt);
+  Actor actor(entity_, places);
+  actor.place({{{10.0, -1.6}, 0.0}, 0.0});
+  actor.setSpeed({}, 100.0, std::make_shared<Performance>());
+  for (int i = 0; i < 400; ++i) actor.advance(kStep * i, kStep * 2.0);
+  EXPECT_NEAR(actor.reference().pose.position.x(), 4010.0, 1.0);
 }
 
 TEST_F(StoryboardActor, ItStopsWhereTheNetworkEnds) {

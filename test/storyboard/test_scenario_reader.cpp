@@ -166,10 +166,10 @@ TEST_F(ScenarioReader, UnknownWordsOfConditionsAreRefused) {
   };
   const std::string distance =
       "<RelativeDistanceCondition entityRef=\"Ego\" value=\"1\" rule=\"lessThan\" ";
-  expectText(errorOf("<ByValueCondition><StoryboardElementStateCondition state=\"runing\" "
+  expectText(errorOf("<ByValueCondition><StoryboardElementStateCondition state=\"started\" "
                      "storyboardElementType=\"act\" storyboardElementRef=\"a\"/>"
                      "</ByValueCondition>"),
-             "'state' is 'runing'; expected one of");
+             "'state' is 'started'; expected one of");
   expectText(byEntity(distance + "relativeDistanceType=\"long\"/>"), "'relativeDistanceType'");
   expectText(byEntity(distance + "coordinateSystem=\"lanes\"/>"), "'coordinateSystem'");
   expectText(byEntity("<SpeedCondition value=\"1\" rule=\"lessThan\" direction=\"lateral\"/>"),
