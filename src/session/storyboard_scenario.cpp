@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -27,8 +29,16 @@ std::string lowerCase(std::string text) {
 }
 
 const Entity& egoOf(const Scenario& scenario) {
-  for (const Entity& entity : scenario.entities)
-    if (lowerCase(entity.controller).find("external") != std::string::npos) return entity;
+  const Entity* external = nullptr;
+  for (const Entity& entity : scenario.entities) {
+    if (lowerCase(entity.controller).find("external") == std::string::npos) continue;
+    if (external != nullptr) {
+      throw InputError(entity.source.text() + ": '" + external->name + "' and '" + entity.name +
+                       "' have external controllers; expected one ego");
+    }
+    external = &entity;
+  }
+  if (external != nullptr) return *external;
   for (const Entity& entity : scenario.entities) {
     const std::string name = lowerCase(entity.name);
     if (name == "ego" || name == "hero") return entity;
@@ -47,6 +57,26 @@ void requireUsableNames(const Scenario& scenario, const Entity& ego) {
                        "' cannot be the name of a vehicle; expected letters, digits, '_', '-' and "
                        "'.', and not 'ego'");
     }
+  }
+}
+
+/// An entity of which the storyboard's beginning wants something must be somewhere.
+void requirePlaces(const Scenario& scenario, const Entity& ego) {
+  using storyboard::InitAction;
+  std::set<std::string> placed = {"", ego.name};
+  for (const InitAction& init : scenario.init) {
+    if (std::holds_alternative<storyboard::TeleportAction>(init.action.what))
+      placed.insert(init.entity);
+    if (const auto* added = std::get_if<storyboard::EntityAction>(&init.action.what))
+      placed.insert(added->entity);
+  }
+  for (const InitAction& init : scenario.init) {
+    const auto& what = init.action.what;
+    const bool needs_none = std::holds_alternative<storyboard::NoAction>(what) ||
+                            std::holds_alternative<storyboard::ControllerAction>(what);
+    if (needs_none || placed.count(init.entity) != 0) continue;
+    throw InputError(init.action.source.text() + ": '" + init.entity +
+                     "' has no place in <Init>; expected a <TeleportAction>");
   }
 }
 
@@ -74,19 +104,20 @@ double startSpeedOf(const Scenario& scenario, const std::string& ego) {
 }
 
 void chooseCbvs(const Scenario& scenario, const Entity& ego, ScenarioOptions& options) {
-  std::vector<std::string> planners;
+  std::string chosen;
   options.cbv.only.clear();
   for (const Entity& entity : scenario.entities) {
     const std::string planner = &entity == &ego ? "" : plannerOf(entity, planners::Role::kCbv);
     if (planner.empty()) continue;
-    planners.push_back(planner);
+    if (!chosen.empty() && planner != chosen) {
+      throw InputError(entity.source.text() + ": the controller is '" + planner + "'; expected '" +
+                       chosen + "' as before, because all CBVs have one planner");
+    }
+    chosen = planner;
     options.cbv.only.push_back(entity.name);
   }
-  options.max_cbv = static_cast<std::int64_t>(std::min<std::size_t>(planners.size(), 16));
-  if (planners.empty()) return;
-  const bool same = std::all_of(planners.begin(), planners.end(),
-                                [&](const std::string& name) { return name == planners[0]; });
-  options.cbv_planner = same ? planners[0] : core::joinText(planners, "+");
+  options.max_cbv = static_cast<std::int64_t>(options.cbv.only.size());
+  if (!chosen.empty()) options.cbv_planner = chosen;
 }
 
 /// A criterion of scenario_runner, and the rule that it stands for.
@@ -137,6 +168,7 @@ ScenarioOptions openScenarioOptions(const std::string& file, const ScenarioOptio
   }
   const Entity& ego = egoOf(scenario);
   requireUsableNames(scenario, ego);
+  requirePlaces(scenario, ego);
   ScenarioOptions options = base;
   options.name = scenario.name;
   options.storyboard.file = std::filesystem::absolute(file).string();
@@ -167,23 +199,29 @@ std::shared_ptr<const storyboard::Play> readPlay(const StoryboardOptions& option
 
 map::Route egoRouteOf(const storyboard::Play& play) {
   const Entity& ego = *play.scenario.find(play.ego);
-  const storyboard::Places::PoseOf nobody = [&](const std::string& entity) -> storyboard::MapPose {
-    throw InputError("the ego's place refers to '" + entity + "', which is not placed before it");
+  std::map<std::string, storyboard::MapPose> placed;
+  const storyboard::Places::PoseOf pose_of = [&](const std::string& entity) {
+    const auto found = placed.find(entity);
+    if (found != placed.end()) return found->second;
+    throw InputError("'" + entity + "' is not placed before this refers to it");
   };
+  for (const storyboard::InitAction& init : play.scenario.init)
+    if (const auto* to = std::get_if<storyboard::TeleportAction>(&init.action.what))
+      placed[init.entity] = play.places.resolve(to->to, pose_of);
   std::optional<storyboard::MapPose> start;
   std::vector<Eigen::Vector3d> points;
   for (const storyboard::InitAction& init : play.scenario.init) {
     if (init.entity != play.ego) continue;
-    if (const auto* to = std::get_if<storyboard::TeleportAction>(&init.action.what)) {
-      start = play.places.resolve(to->to, nobody);
-      start->pose.position = start->pose.toMap(ego.center);
-    }
     const auto* const route = std::get_if<storyboard::RouteAction>(&init.action.what);
     if (route == nullptr) continue;
     for (const storyboard::Position& waypoint : route->waypoints) {
-      const storyboard::MapPose place = play.places.resolve(waypoint, nobody);
+      const storyboard::MapPose place = play.places.resolve(waypoint, pose_of);
       points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
     }
+  }
+  if (placed.count(play.ego) != 0) {
+    start = placed.at(play.ego);
+    start->pose.position = start->pose.toMap(ego.center);
   }
   if (!start) throw InputError(ego.source.text() + ": the ego has no <TeleportAction> in <Init>");
   if (!points.empty()) return play.places.routeThrough(*start, std::move(points));

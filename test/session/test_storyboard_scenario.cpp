@@ -69,6 +69,39 @@ TEST_F(StoryboardScenario, ControllersNamedLikePlannersMakeCbvs) {
   EXPECT_EQ(options.max_cbv, 1);
 }
 
+TEST_F(StoryboardScenario, TwoEgosAreRefused) {
+  change(kOvertaker, std::string(kOvertaker) +
+                         "<ObjectController><Controller name=\"external\"/></ObjectController>");
+  EXPECT_NE(error().find("cut_in.xosc:26: 'Ego' and 'overtaker' have external controllers"),
+            std::string::npos)
+      << error();
+}
+
+TEST_F(StoryboardScenario, AllCbvsHaveOnePlanner) {
+  const std::string controller = "<ObjectController><Controller name=\"";
+  change(kOvertaker, std::string(kOvertaker) + controller +
+                         "diffusion\"/></ObjectController></ScenarioObject>\n<ScenarioObject "
+                         "name=\"third\"><CatalogReference catalogName=\"vehicles\" "
+                         "entryName=\"car\"/>" +
+                         controller + "pdm_lite\"/></ObjectController>");
+  EXPECT_NE(error().find("cut_in.xosc:28: the controller is 'pdm_lite'"), std::string::npos)
+      << error();
+}
+
+TEST_F(StoryboardScenario, AnEntityWithActionsAndNoPlaceIsRefused) {
+  change("<RelativeLanePosition entityRef=\"Ego\" dLane=\"1\" ds=\"-20\"/>", "PLACE");
+  std::string text = core::readFile(file(), "example");
+  const std::size_t place = text.find("PLACE");
+  const std::size_t begin = text.rfind("<TeleportAction>", place);
+  const std::size_t end = text.find("</TeleportAction>", place) + 17;
+  text.replace(
+      begin, end - begin,
+      "<RoutingAction><AcquirePositionAction><Position><LanePosition "
+      "roadId=\"1\" laneId=\"-2\" s=\"50\"/></Position></AcquirePositionAction></RoutingAction>");
+  core::writeFileAtomically(file(), text);
+  EXPECT_NE(error().find("'overtaker' has no place in <Init>"), std::string::npos) << error();
+}
+
 TEST_F(StoryboardScenario, WithoutAnExternalControllerTheEgoIsFoundByItsName) {
   change("external_control", "some_controller");
   EXPECT_EQ(options().route.start_speed, 10.0);
