@@ -118,14 +118,13 @@ constexpr MeasureDefinition absentInfraction(const char* name, const char* place
 }
 constexpr MeasureDefinition kPedestrians = absentInfraction(
     "ego_infraction_pedestrian_collisions", "/ego/infractions/pedestrian_collisions",
-    "Collisions with pedestrians", "Always absent: these sessions have no pedestrians.");
+    "Collisions with pedestrians", "Always absent: contacts with pedestrians are not told apart.");
 constexpr MeasureDefinition kTimeouts = absentInfraction(
     "ego_infraction_scenario_timeouts", "/ego/infractions/scenario_timeouts", "Scenario time-outs",
-    "Always absent: these sessions have no scripted scenarios.");
-constexpr MeasureDefinition kStaticCollisions =
-    absentInfraction("ego_infraction_static_collisions", "/ego/infractions/static_collisions",
-                     "Collisions with static objects",
-                     "Always absent: these sessions have no static objects to hit.");
+    "Always absent: scripted scenarios have no time limit of their own.");
+constexpr MeasureDefinition kStaticCollisions = absentInfraction(
+    "ego_infraction_static_collisions", "/ego/infractions/static_collisions",
+    "Collisions with static objects", "Always absent: contacts with objects are not told apart.");
 constexpr MeasureDefinition kVehicleCollisions = {
     "ego_infraction_vehicle_collisions",
     "/ego/infractions/vehicle_collisions",
@@ -264,9 +263,9 @@ class DrivingScore final : public Metric {
 
   /// What the leaderboard charges and these sessions do not have.
   static void reportNotOccurring(MetricSink& sink) {
-    sink.set(kPedestrians, absentMeasure("these sessions have no pedestrians"));
-    sink.set(kStaticCollisions, absentMeasure("these sessions have no static objects to hit"));
-    sink.set(kTimeouts, absentMeasure("these sessions have no scripted scenarios"));
+    sink.set(kPedestrians, absentMeasure("contacts with pedestrians are not told apart"));
+    sink.set(kStaticCollisions, absentMeasure("contacts with objects are not told apart"));
+    sink.set(kTimeouts, absentMeasure("scripted scenarios have no time limit of their own"));
     sink.set(kYieldsFailed, absentMeasure("these sessions have no emergency vehicles"));
   }
 

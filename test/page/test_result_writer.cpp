@@ -338,7 +338,7 @@ TEST(ResultWriter, SummaryReportsTheEgosInfractions) {
   EXPECT_EQ(ego["infractions_n"]["outside_lanes_percent"], 121);
   EXPECT_EQ(ego["infractions_n"]["pedestrian_collisions"], 0);
   EXPECT_TRUE(found["pedestrian_collisions"].is_null());
-  EXPECT_EQ(found["pedestrian_collisions_reason"], "these sessions have no pedestrians");
+  EXPECT_EQ(found["pedestrian_collisions_reason"], "contacts with pedestrians are not told apart");
 }
 
 TEST(ResultWriter, SummaryReportsWhatWasPlannedAndGuided) {
