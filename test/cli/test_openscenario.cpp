@@ -84,9 +84,8 @@ TEST_F(OpenScenario, AControllersNameMakesAVehicleACbv) {
 }
 
 TEST_F(OpenScenario, WhatIsNotSupportedIsRefusedOrListedInTheSummary) {
-  change("<LaneChangeAction>", "<SpeedProfileAction/><LaneChangeAction>");
-  change("<LateralAction>", "<LongitudinalAction>");
-  change("</LateralAction>", "</LongitudinalAction>");
+  change("<LaneChangeAction>", "<SpeedProfileAction>");
+  change("</LaneChangeAction>", "</SpeedProfileAction>");
   EXPECT_EQ(drive("refused"), kBadInput);
   expectOutput("cut_in.xosc:84: <SpeedProfileAction>: this action is not supported");
   EXPECT_FALSE(fs::exists(path("refused")));
