@@ -135,6 +135,8 @@ int runHostedNode(const std::string& kind, const std::string& name, StopSignal& 
 int runNodeletManager(int argc, char** argv, const LoadNodelet& load) {
   core::prepareProgram();
   const StopSignal stop;  // blocks the signals, for the nodes to ask for
+  loadPlugins();  // a child tries them, which needs a process of one thread; the nodes say what is
+                  // wrong
   ros::init(argc, argv, "session_nodelets", ros::init_options::NoSigintHandler);
   if (!ros::master::check()) return MetricsNode::runWithoutMaster();
   ros::master::setRetryTimeout(ros::WallDuration(kMasterPatience));

@@ -137,6 +137,7 @@ TEST(DiffusionPlanner, WaitsForTheImageAndBrakesWithANamedFaultWithoutAUsableOne
   ASSERT_TRUE(answered(0));
   EXPECT_EQ(simulator.cbv_controls.at(0)->planner, "cbv:diffusion");
   EXPECT_EQ(simulator.cbv_controls.at(0)->fault, "");
+  ASSERT_TRUE(simulator.until([&] { return simulator.rollouts.count(0) == 1; }));
   EXPECT_GT(simulator.rollouts.at(0)->points.size(), 0U);
   EXPECT_EQ(simulator.guidance.at(0)->vehicles.at(0).vehicle_id, "bg_0");
 
