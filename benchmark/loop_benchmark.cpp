@@ -197,51 +197,59 @@ std::vector<double> nodeGraphLoop(const fs::path& folder) {
   return rates;
 }
 
+/// What the sessions of all seeds give.
+struct LoopRates {
+  std::vector<double> full, one_thread, without_results, bare;  ///< [ticks/s]
+  std::vector<double> share, sumo_share;                        ///< [%]
+  std::vector<double> vehicles, bare_vehicles, cbvs;            ///< a tick
+  std::map<std::string, std::vector<double>> stages;            ///< [us/tick]
+};
+
+void measureSeed(std::int64_t seed, const fs::path& folder, LoopRates& rates) {
+  const session::SessionSetup setup(town05(seed));
+  // cdiff run makes the drivable area while SUMO starts.
+  setup.drivableArea().contains(setup.egoRoute().path().pointAt(0.0).head<2>());
+  const LoopResult with = runLoop(setup, Results::kBeside, folder);
+  const LoopResult in_turn = runLoop(setup, Results::kInTurn, folder);
+  const LoopResult without = runLoop(setup, Results::kNone, folder);
+  const auto ticks = static_cast<double>(with.census.ticks);
+  rates.full.push_back(ticks / with.seconds);
+  rates.one_thread.push_back(ticks / in_turn.seconds);
+  rates.without_results.push_back(static_cast<double>(without.census.ticks) / without.seconds);
+  double bare_vehicles = 0.0;
+  rates.bare.push_back(ticks / BareTraffic(setup).run(with.census.ticks, bare_vehicles));
+  rates.bare_vehicles.push_back(bare_vehicles);
+  rates.sumo_share.push_back(100.0 * with.stages.at("sumo_step") * ticks / 1e6 / with.seconds);
+  rates.share.push_back(100.0 * rates.full.back() / rates.bare.back());
+  for (const auto& [stage, microseconds] : with.stages) rates.stages[stage].push_back(microseconds);
+  for (const std::string stage : {"record", "metrics"})
+    rates.stages["beside_" + stage].push_back(in_turn.stages.at(stage));
+  rates.vehicles.push_back(static_cast<double>(with.census.vehicles) / ticks);
+  rates.cbvs.push_back(static_cast<double>(with.census.cbvs) / ticks);
+}
+
 }  // namespace
 
 void benchmarkLoop(Figures& figures) {
   ::setenv("SUMO_HOME", "/usr/share/sumo", 0);
   const fs::path folder =
       fs::temp_directory_path() / ("cdiff_benchmark_" + std::to_string(::getpid()));
-  std::vector<double> full, one_thread, without_results, bare, bare_vehicles, share, sumo_share,
-      vehicles, cbvs;
-  std::map<std::string, std::vector<double>> stages;
-  for (std::int64_t seed = 1; seed <= 5; ++seed) {
-    const session::SessionSetup setup(town05(seed));
-    // cdiff run makes the drivable area while SUMO starts.
-    setup.drivableArea().contains(setup.egoRoute().path().pointAt(0.0).head<2>());
-    const LoopResult with = runLoop(setup, Results::kBeside, folder);
-    const LoopResult in_turn = runLoop(setup, Results::kInTurn, folder);
-    const LoopResult without = runLoop(setup, Results::kNone, folder);
-    const auto ticks = static_cast<double>(with.census.ticks);
-    full.push_back(ticks / with.seconds);
-    one_thread.push_back(ticks / in_turn.seconds);
-    without_results.push_back(static_cast<double>(without.census.ticks) / without.seconds);
-    double bare_count = 0.0;
-    bare.push_back(ticks / BareTraffic(setup).run(with.census.ticks, bare_count));
-    bare_vehicles.push_back(bare_count);
-    sumo_share.push_back(100.0 * with.stages.at("sumo_step") * ticks / 1e6 / with.seconds);
-    share.push_back(100.0 * full.back() / bare.back());
-    for (const auto& [stage, microseconds] : with.stages) stages[stage].push_back(microseconds);
-    for (const std::string stage : {"record", "metrics"})
-      stages["beside_" + stage].push_back(in_turn.stages.at(stage));
-    vehicles.push_back(static_cast<double>(with.census.vehicles) / ticks);
-    cbvs.push_back(static_cast<double>(with.census.cbvs) / ticks);
-  }
+  LoopRates rates;
+  for (std::int64_t seed = 1; seed <= 5; ++seed) measureSeed(seed, folder, rates);
   const std::vector<double> node_graph = nodeGraphLoop(folder);
   fs::remove_all(folder);
-  figures.push_back({"loop_with_results", median(full), "ticks/s", ">=1000"});
-  figures.push_back({"loop_with_results_in_one_thread", median(one_thread), "ticks/s", ""});
-  figures.push_back({"loop_without_results", median(without_results), "ticks/s", ">=1000"});
-  figures.push_back({"loop_bare_libtraci", median(bare), "ticks/s", ""});
-  figures.push_back({"loop_share_of_bare", median(share), "%", ">=85"});
-  figures.push_back({"loop_sumo_share", median(sumo_share), "%", ""});
+  figures.push_back({"loop_with_results", median(rates.full), "ticks/s", ">=1000"});
+  figures.push_back({"loop_with_results_in_one_thread", median(rates.one_thread), "ticks/s", ""});
+  figures.push_back({"loop_without_results", median(rates.without_results), "ticks/s", ">=1000"});
+  figures.push_back({"loop_bare_libtraci", median(rates.bare), "ticks/s", ""});
+  figures.push_back({"loop_share_of_bare", median(rates.share), "%", ">=85"});
+  figures.push_back({"loop_sumo_share", median(rates.sumo_share), "%", ""});
   if (!node_graph.empty())
     figures.push_back({"loop_node_graph_recording", median(node_graph), "ticks/s", ""});
-  figures.push_back({"loop_vehicles", median(vehicles), "vehicles", ""});
-  figures.push_back({"loop_bare_vehicles", median(bare_vehicles), "vehicles", ""});
-  figures.push_back({"loop_cbvs_driven", median(cbvs), "vehicles", ""});
-  for (const auto& [stage, microseconds] : stages)
+  figures.push_back({"loop_vehicles", median(rates.vehicles), "vehicles", ""});
+  figures.push_back({"loop_bare_vehicles", median(rates.bare_vehicles), "vehicles", ""});
+  figures.push_back({"loop_cbvs_driven", median(rates.cbvs), "vehicles", ""});
+  for (const auto& [stage, microseconds] : rates.stages)
     figures.push_back({"loop_stage_" + stage, median(microseconds), "us/tick", ""});
 }
 

@@ -299,6 +299,24 @@ int cancel(const EvaluateArguments& arguments) {
   return ExitCode::kPassed;
 }
 
+/// Writes the batch's files and prints its table; `repeated`: routes that run once.
+void sumUp(const MatrixOptions& matrix, const EvaluateArguments& arguments,
+           core::OutputFolder& output, const std::vector<RunRecord>& records,
+           const std::string& repeated) {
+  const fs::path& results = output.path();
+  output.requireInPlace();
+  evaluation::writeBatchFiles(results, matrix.name, records);
+  evaluation::writeBatchReport(results, matrix.name);
+  std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;
+  if (matrix.ego_ranking) text += evaluation::writeEgoRanking({results}, matrix.name);
+  if (arguments.matrix.empty() && !arguments.bench2drive.empty()) {
+    text = routeTable(records, arguments.bench2drive, results) + repeated;
+    output.write("table.md", text);
+  }
+  std::cout << text << std::flush;
+  std::cerr << "report: " << (results / "index.html").string() << "\n";
+}
+
 int evaluate(const EvaluateArguments& arguments) {
   if (arguments.cancel) return cancel(arguments);
   requireEngine(arguments.engine, evaluation::slurmOptionsOf(arguments.slurm));
@@ -320,17 +338,7 @@ int evaluate(const EvaluateArguments& arguments) {
   noteLeftOut(output, left_out);
   const auto records = execute(plan, matrix, results, arguments, chosen);
   if (arguments.engine == "print" && !arguments.attach) return ExitCode::kPassed;
-  output.requireInPlace();
-  evaluation::writeBatchFiles(results, matrix.name, records);
-  evaluation::writeBatchReport(results, matrix.name);
-  std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;
-  if (matrix.ego_ranking) text += evaluation::writeEgoRanking({results}, matrix.name);
-  if (arguments.matrix.empty() && !arguments.bench2drive.empty()) {
-    text = routeTable(records, arguments.bench2drive, results) + repeated;
-    output.write("table.md", text);
-  }
-  std::cout << text << std::flush;
-  std::cerr << "report: " << (results / "index.html").string() << "\n";
+  sumUp(matrix, arguments, output, records, repeated);
   return exitCodeOf(records, plan, chosen);
 }
 

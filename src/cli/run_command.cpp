@@ -228,10 +228,9 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   if (!output.quiet) loop.addObserver(progress);
   BagRecording bag(setup, output, loop);
   VideoRecord video(setup, output.folder, loop);
+  const auto times = core::wantedStageTimes();
   try {
-    const auto times = core::wantedStageTimes();
     loop.run(stop);
-    core::writeStageTimes(times.get());
   } catch (const std::exception&) {
     if (writer.failure().empty()) throw;
     bag.discard();
@@ -240,6 +239,7 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   const std::string& bag_error = bag.finish();
   if (!bag_error.empty()) writer.recordFault({0, "recorder", bag_error});
   finishResult(writer, secondsSince(begin));
+  core::writeStageTimes(times.get());
   const int exit_code = video.finish(writer, writer.exitCode());
   printTable(writer, output);
   if (live != nullptr) live->finish();

@@ -124,7 +124,6 @@ FileDescriptor LeaseFolder::place(const fs::path& file) const {
 }
 
 std::shared_ptr<const Lease> LeaseFolder::claim(const std::string& name) {
-  makeFolder(folder_);
   const Generations before = list()[name];
   for (const auto& [generation, file] : before) {
     if (!isLeftBehind(file)) return nullptr;
@@ -134,7 +133,7 @@ std::shared_ptr<const Lease> LeaseFolder::claim(const std::string& name) {
   FileDescriptor descriptor = place(file);
   if (!descriptor) return nullptr;
   // NOLINTNEXTLINE(modernize-make-shared): the constructor is private
-  const std::shared_ptr<const Lease> lease(new Lease(file, std::move(descriptor), !before.empty()));
+  const std::shared_ptr<const Lease> lease(new Lease(file, std::move(descriptor)));
   const Generations after = list()[name];
   for (const auto& [generation, other] : after) {
     const bool known = generation == next || before.count(generation) != 0;

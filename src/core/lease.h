@@ -40,18 +40,15 @@ class Lease {
 
   /// Whether no other process has taken the work over, as one may that saw no beat for too long.
   bool isHeld() const;
-  /// Whether it was taken over from a holder that left it behind.
-  bool tookOver() const { return took_over_; }
 
  private:
   friend class LeaseFolder;
-  Lease(std::filesystem::path file, FileDescriptor descriptor, bool took_over)
-      : file_(std::move(file)), descriptor_(std::move(descriptor)), took_over_(took_over) {}
+  Lease(std::filesystem::path file, FileDescriptor descriptor)
+      : file_(std::move(file)), descriptor_(std::move(descriptor)) {}
   void beat(std::size_t number) const;
 
   std::filesystem::path file_;
   FileDescriptor descriptor_;  ///< locked
-  bool took_over_;
 };
 
 /// The folder of leases NAME.GENERATION, as one process sees it. No clock of another host counts:

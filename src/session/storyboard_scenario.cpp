@@ -93,12 +93,19 @@ std::string plannerOf(const Entity& entity, planners::Role role) {
   return name;
 }
 
-/// Speed that the ego is told to start with [m/s].
+/// The ego's start speed, from <Init> [m/s]; 0 where there is none. Throws InputError for one that
+/// our planners do not drive.
 double startSpeedOf(const Scenario& scenario, const std::string& ego) {
+  constexpr double kMostSpeed = 40.0;  // [m/s], as of the key target_speed
   double speed = 0.0;
   for (const storyboard::InitAction& init : scenario.init) {
     const auto* const action = std::get_if<storyboard::SpeedAction>(&init.action.what);
-    if (init.entity == ego && action != nullptr && action->entity.empty()) speed = action->value;
+    if (init.entity != ego || action == nullptr || !action->entity.empty()) continue;
+    speed = action->value;
+    if (speed >= 0.0 && speed <= kMostSpeed) continue;
+    throw InputError(init.action.source.text() + ": the ego starts with " +
+                     core::formatNumber(speed) + " m/s; expected 0 to " +
+                     core::formatNumber(kMostSpeed) + " m/s");
   }
   return speed;
 }
@@ -176,8 +183,8 @@ ScenarioOptions openScenarioOptions(const std::string& file, const ScenarioOptio
   options.demand = "none";
   options.verdict = rules(scenario);
   const double speed = startSpeedOf(scenario, ego.name);
-  options.route.start_speed = std::min(speed, 60.0);
-  if (speed > 0.5) options.target_speed = std::min(speed, 40.0);
+  options.route.start_speed = speed;
+  if (speed > 0.5) options.target_speed = speed;  // an ego that starts from rest is to drive, too
   const std::string planner = plannerOf(ego, planners::Role::kEgo);
   if (!planner.empty()) options.ego_planner = planner;
   chooseCbvs(scenario, ego, options);
@@ -197,35 +204,56 @@ std::shared_ptr<const storyboard::Play> readPlay(const StoryboardOptions& option
                                                   ego);
 }
 
-map::Route egoRouteOf(const storyboard::Play& play) {
-  const Entity& ego = *play.scenario.find(play.ego);
-  std::map<std::string, storyboard::MapPose> placed;
-  const storyboard::Places::PoseOf pose_of = [&](const std::string& entity) {
+namespace {
+
+using PlacesOfEntities = std::map<std::string, storyboard::MapPose>;
+
+storyboard::MapPose resolved(const storyboard::Play& play, const storyboard::Position& position,
+                             const PlacesOfEntities& placed) {
+  return play.places.resolve(position, [&](const std::string& entity) {
     const auto found = placed.find(entity);
     if (found != placed.end()) return found->second;
     throw InputError("'" + entity + "' is not placed before this refers to it");
-  };
+  });
+}
+
+/// Where <Init> places the entities, by name.
+PlacesOfEntities startPlaces(const storyboard::Play& play) {
+  PlacesOfEntities placed;
   for (const storyboard::InitAction& init : play.scenario.init)
     if (const auto* to = std::get_if<storyboard::TeleportAction>(&init.action.what))
-      placed[init.entity] = play.places.resolve(to->to, pose_of);
-  std::optional<storyboard::MapPose> start;
+      placed[init.entity] = resolved(play, to->to, placed);
+  return placed;
+}
+
+/// The points that <Init> gives the ego to drive through, in the map frame.
+std::vector<Eigen::Vector3d> waypointsOf(const storyboard::Play& play,
+                                         const PlacesOfEntities& placed) {
   std::vector<Eigen::Vector3d> points;
   for (const storyboard::InitAction& init : play.scenario.init) {
-    if (init.entity != play.ego) continue;
     const auto* const route = std::get_if<storyboard::RouteAction>(&init.action.what);
-    if (route == nullptr) continue;
+    if (init.entity != play.ego || route == nullptr) continue;
     for (const storyboard::Position& waypoint : route->waypoints) {
-      const storyboard::MapPose place = play.places.resolve(waypoint, pose_of);
+      const storyboard::MapPose place = resolved(play, waypoint, placed);
       points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
     }
   }
-  if (placed.count(play.ego) != 0) {
-    start = placed.at(play.ego);
-    start->pose.position = start->pose.toMap(ego.center);
-  }
-  if (!start) throw InputError(ego.source.text() + ": the ego has no <TeleportAction> in <Init>");
-  if (!points.empty()) return play.places.routeThrough(*start, std::move(points));
-  const auto route = play.places.routeFrom(*start);
+  return points;
+}
+
+}  // namespace
+
+map::Route egoRouteOf(const storyboard::Play& play) {
+  const Entity& ego = *play.scenario.find(play.ego);
+  const PlacesOfEntities placed = startPlaces(play);
+  const auto found = placed.find(play.ego);
+  if (found == placed.end())
+    throw InputError(ego.source.text() + ": the ego has no <TeleportAction> in <Init>");
+  storyboard::MapPose start = found->second;
+  start.pose.position = start.pose.toMap(ego.center);
+  std::vector<Eigen::Vector3d> points = waypointsOf(play, placed);
+  if (!points.empty()) return play.places.routeThrough(start, std::move(points));
+  const auto route = play.places.routeFrom(start);
   if (route) return *route;
   throw InputError(ego.source.text() + ": the ego starts on no lane of its heading");
 }

@@ -29,7 +29,7 @@ std::shared_ptr<const storyboard::Play> readPlay(const StoryboardOptions& option
                                                  const map::LaneGraph& graph);
 
 /// The ego's route as the storyboard's beginning gives it: from its place through the positions
-/// that it is told to reach, else along its lane. Throws InputError naming file and line.
+/// that it is to reach, else along its lane. Throws InputError naming file and line.
 map::Route egoRouteOf(const storyboard::Play& play);
 
 }  // namespace cdiff::session

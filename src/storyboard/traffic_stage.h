@@ -15,9 +15,9 @@
 namespace cdiff::storyboard {
 
 /// The entities of a scenario in a session: those that the storyboard moves, and those that
-/// planners drive, whose states it is told. Answers the conditions of a storyboard and performs its
-/// actions (map frame, SI units). Actions on entities that planners drive do nothing and are over
-/// at once.
+/// planners drive, whose states `observe` takes. Answers the conditions of a storyboard and
+/// performs its actions (map frame, SI units). Actions on entities that planners drive do nothing
+/// and are over at once.
 class TrafficStage : public Stage {
  public:
   /// References must outlive the object. `planned`: entities that planners drive from the start.

@@ -114,7 +114,7 @@ class SlurmEngine : public test::EvaluateCommand {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
-  /// Slurm lets a task that it queues again wait for two minutes, unless it is told otherwise.
+  /// By default Slurm holds a task back for two minutes when it queues it again.
   int waitWithoutDelays(test::ProgramRun& driver) const {
     while (!driver.waitForEnd(1.0)) {
       shell(

@@ -69,6 +69,11 @@ TEST_F(StoryboardScenario, ControllersNamedLikePlannersMakeCbvs) {
   EXPECT_EQ(options.max_cbv, 1);
 }
 
+TEST_F(StoryboardScenario, AStartSpeedThatNoPlannerDrivesIsRefused) {
+  change("parameterType=\"double\" value=\"10\"", "parameterType=\"double\" value=\"410\"");
+  EXPECT_NE(error().find("m/s; expected 0 to 40 m/s"), std::string::npos) << error();
+}
+
 TEST_F(StoryboardScenario, TwoEgosAreRefused) {
   change(kOvertaker, std::string(kOvertaker) +
                          "<ObjectController><Controller name=\"external\"/></ObjectController>");

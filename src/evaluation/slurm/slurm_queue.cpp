@@ -52,11 +52,11 @@ std::size_t requireSlurm() {
     core::findProgram(command, kPackage);
   for (const std::string& line :
        core::splitText(require("scontrol", {"show", "config"}).text, '\n')) {
-    const std::size_t equals = line.find('=');
-    if (line.rfind("MaxArraySize", 0) != 0 || equals == std::string::npos) continue;
-    const auto size = std::stoul(line.substr(equals + 1));
-    if (size > 0) return size;
-    throw core::InputError("this cluster allows no job arrays (MaxArraySize is 0)");
+    if (line.rfind("MaxArraySize", 0) != 0) continue;
+    const std::string value = line.substr(line.find_last_of("= ") + 1);
+    const auto size = core::parseNumber(value);
+    if (size && *size >= 1.0) return static_cast<std::size_t>(*size);
+    throw core::InputError("this cluster allows no job arrays (MaxArraySize is " + value + ")");
   }
   throw core::InputError("scontrol show config names no MaxArraySize; is this Slurm?");
 }

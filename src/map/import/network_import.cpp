@@ -157,35 +157,26 @@ struct Format {
   std::string (*convert)(const fs::path& source);
 };
 
-/// Levels of elements below the document.
-int elementLevels(const pugi::xml_document& document) {
-  int most = 0;
-  int level = 0;
-  for (pugi::xml_node node = document.first_child(); node;) {
-    most = std::max(most, level + 1);
-    if (node.first_child()) {
-      node = node.first_child();
-      ++level;
-      continue;
-    }
-    while (node && !node.next_sibling()) {
-      node = node.parent();
-      --level;
-    }
-    if (node) node = node.next_sibling();
+/// Counts the levels of elements below a document.
+struct LevelCounter : pugi::xml_tree_walker {
+  int levels = 0;
+  bool for_each(pugi::xml_node& /*node*/) override {
+    levels = std::max(levels, depth() + 1);
+    return true;
   }
-  return most;
-}
+};
 
 /// netconvert's time grows with the square of the levels. A text that is no XML is left to it.
 void requireFewLevels(const std::string& content, const std::string& source) {
   constexpr int kMostLevels = 100;  // standard files have about ten
   pugi::xml_document document;
   if (!document.load_buffer(content.data(), content.size(), pugi::parse_minimal)) return;
-  const int levels = elementLevels(document);
-  if (levels <= kMostLevels) return;
-  throw core::InputError("network '" + source + "' nests elements " + std::to_string(levels) +
-                         " levels deep; at most " + std::to_string(kMostLevels) + " were expected");
+  LevelCounter counter;
+  document.traverse(counter);
+  if (counter.levels <= kMostLevels) return;
+  throw core::InputError("network '" + source + "' nests elements " +
+                         std::to_string(counter.levels) + " levels deep; at most " +
+                         std::to_string(kMostLevels) + " were expected");
 }
 
 void importConverted(const Format& format, const std::string& content, ImportedNetwork& network) {
