@@ -7,8 +7,9 @@
 
 namespace cdiff::cli {
 
-/// The ids at places I, I+N, I+2N ... for a part "I/N"; all where it is empty. Throws InputError
-/// for anything else than whole numbers with 0 <= I < N.
+/// The runs of a plan that `cdiff worker --part I/N` takes: those at places I, I+N, I+2N ...,
+/// counted from 0; all of them where `part` is empty. Throws InputError for anything else than
+/// whole numbers with 0 <= I < N.
 std::vector<std::string> partOf(const std::vector<std::string>& ids, const std::string& part);
 
 }  // namespace cdiff::cli
