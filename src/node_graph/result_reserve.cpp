@@ -137,6 +137,11 @@ int ResultReserve::writeEnd(const msgs::TrafficSnapshot& end, double wall_second
   return finishResult(writer, wall_seconds);
 }
 
+void removeReserveOf(const fs::path& results) {
+  core::OutputFolder folder(results);
+  removeReserve(folder);
+}
+
 ProcessReserve::ProcessReserve(const session::SessionSetup& setup, const fs::path& results,
                                const BagOrigin& origin)
     : results_(results),

@@ -55,6 +55,9 @@ class ResultReserve {
   std::string lost_;              ///< why it was
 };
 
+/// Takes away RESULTS/.reserve of a simulator that died, once its result is written.
+void removeReserveOf(const std::filesystem::path& results);
+
 /// What a session in one process keeps aside of its ticks, in RESULTS/.reserve, where that process
 /// may crash: another one writes the result then (writeAbandonedResult).
 class ProcessReserve : public session::SessionObserver {

@@ -30,6 +30,7 @@ class SessionFaults : public ::testing::Test {
     EXPECT_EQ(session_.summary()["status"], "error");
     EXPECT_EQ(session_.fault().find(culprit + ": "), 0U) << session_.fault() << session_.log();
     EXPECT_EQ(session_.leftovers(), "");
+    EXPECT_FALSE(fs::exists(session_.results() / ".reserve"));
   }
   std::size_t timesInLog(const std::string& text) const {
     const std::string log = session_.log();

@@ -19,6 +19,7 @@
 #include "node_graph/messages/slot_figures.h"
 #include "node_graph/node_main.h"
 #include "node_graph/nodes/service_link.h"
+#include "node_graph/result_reserve.h"
 #include "node_graph/session_files.h"
 #include "node_graph/session_graph.h"
 #include "record/session_text.h"
@@ -204,6 +205,7 @@ int MetricsNode::conclude(Ending ending) {
   std::cout << writer_->table() << bagRow(graph(), results)
             << record::fileRow("video", results / video::kVideoFile) << std::flush;
   writeExitCode(results, exit_code);
+  if (ending != Ending::kFinalSnapshot && ending != Ending::kStopped) removeReserveOf(results);
   if (live_) live_->finish();
   return exit_code;
 }
