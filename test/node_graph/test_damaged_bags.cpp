@@ -114,6 +114,7 @@ class DamagedBags : public testing::Test {
 };
 
 constexpr std::size_t kLastTick = 400;  // 20 s of 0.05 s
+constexpr std::size_t kFirstTicks = 2;  // chunk behind those of session and route
 
 TEST_F(DamagedBags, AWholeBagHasNoFindingsAndCopiesOfItNeither) {
   EXPECT_EQ(replay(bag()).exit_code, 0);
@@ -317,9 +318,9 @@ std::vector<std::pair<std::size_t, std::size_t>> chunksOf(const std::string& byt
 
 TEST_F(DamagedBags, ACutOffRecordingGivesAllThatWasWritten) {
   const auto chunks = chunksOf(bytes_);
-  ASSERT_GE(chunks.size(), 3U);
+  ASSERT_GE(chunks.size(), kFirstTicks + 3);
   std::size_t before = 0;
-  for (std::size_t i = 1; i < chunks.size(); ++i) {
+  for (std::size_t i = kFirstTicks + 1; i < chunks.size(); ++i) {
     const Outcome outcome = replayText(bytes_.substr(0, chunks[i].first + chunks[i].second / 2));
     EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
     EXPECT_TRUE(says(outcome, "before its index")) << outcome.text;
@@ -348,7 +349,7 @@ TEST_F(DamagedBags, ABagThatWasNeverClosedIsReadToItsLastChunk) {
 }
 
 TEST_F(DamagedBags, AChunkIsReadToTheSizeThatItsHeaderSays) {
-  const auto [begin, length] = chunksOf(bytes_)[1];
+  const auto [begin, length] = chunksOf(bytes_)[kFirstTicks + 1];
   const std::uint32_t said = 1000;
   const ChunkText text = decompressChunk("lz4", bytes_.substr(begin, length), said);
   EXPECT_EQ(text.bytes.size(), said);
@@ -361,7 +362,7 @@ TEST_F(DamagedBags, AChunkIsReadToTheSizeThatItsHeaderSays) {
 }
 
 TEST_F(DamagedBags, OverwrittenBytesLoseTheirChunkAlone) {
-  const auto [begin, length] = chunksOf(bytes_)[1];
+  const auto [begin, length] = chunksOf(bytes_)[kFirstTicks + 1];
   std::string bytes = bytes_;
   std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(begin + length / 2), 64, '\x55');
   const Outcome outcome = replayText(bytes);
@@ -372,10 +373,22 @@ TEST_F(DamagedBags, OverwrittenBytesLoseTheirChunkAlone) {
   EXPECT_EQ(outcome.ticks, kLastTick + 1);
 }
 
+TEST_F(DamagedBags, OverwrittenFirstTicksLeaveTheSession) {
+  const auto chunks = chunksOf(bytes_);
+  const auto [begin, length] = chunks[kFirstTicks];
+  ASSERT_GT(length, chunks[0].second + chunks[1].second);
+  std::string bytes = bytes_;
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(begin + length / 2), 64, '\x55');
+  const Outcome outcome = replayText(bytes);
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+  EXPECT_EQ(outcome.summary["status"], "timed_out");
+}
+
 TEST_F(DamagedBags, AnOverwrittenChunkHeaderLosesThatChunkAlone) {
   const auto chunks = chunksOf(bytes_);
   std::string bytes = bytes_;
-  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(chunks[1].first - 30), 20, '\xff');
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(chunks[kFirstTicks + 1].first - 30), 20,
+              '\xff');
   const Outcome outcome = replayText(bytes);
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_TRUE(says(outcome, "are no records of a bag")) << outcome.text;

@@ -75,11 +75,17 @@ void BagFile::put(const Topic& topic, const ros::Time& stamp, const AnyMessage& 
 }
 
 void BagFile::write(const msgs::SessionInfo& info) {
-  guard([&] { put(ChannelId::kSession, ros::TIME_MIN, shared(info)); });
+  guard([&] { putOnce(ChannelId::kSession, shared(info)); });
 }
 
 void BagFile::write(const nav_msgs::Path& ego_route) {
-  guard([&] { put(ChannelId::kEgoRoute, ros::TIME_MIN, shared(ego_route)); });
+  guard([&] { putOnce(ChannelId::kEgoRoute, shared(ego_route)); });
+}
+
+/// In a chunk of its own: where the first ticks are damaged, the session is still known.
+void BagFile::putOnce(ChannelId channel, const AnyMessage& message) {
+  put(channel, ros::TIME_MIN, message);
+  bag_->setChunkThreshold(bag_->getChunkThreshold());  // ends the open chunk
 }
 
 void BagFile::write(const TickMessages& tick) {

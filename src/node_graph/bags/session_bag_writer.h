@@ -56,6 +56,7 @@ class BagFile {
   void guard(const std::function<void()>& writing);
   void writeTick(const TickMessages& tick);
   void put(const Topic& topic, const ros::Time& stamp, const AnyMessage& message);
+  void putOnce(ChannelId channel, const AnyMessage& message);
 
   std::string activeName() const { return name_ + ".active"; }
 
