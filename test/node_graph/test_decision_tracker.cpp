@@ -50,10 +50,10 @@ TEST(PacedAnswers, HoldsTheNewestActionForHalfASecondThenBrakes) {
   };
   EXPECT_EQ(at(5).driven_by, DecidedVehicle::ANSWER);  // between decisions
   EXPECT_EQ(at(6).driven_by, DecidedVehicle::PLAN);
-  EXPECT_EQ(at(14).planned.action.throttle, 0.25);  // (14 - 4) x 0.05 s = 0.5 s old: still held
-  EXPECT_EQ(at(14).plan_tick, 4U);
-  EXPECT_EQ(at(15).planned.action, traffic::ControlAction::failSafe());  // 0.55 s old
-  EXPECT_EQ(at(15).driven_by, DecidedVehicle::FULL_BRAKE);
+  EXPECT_EQ(at(13).planned.action.throttle, 0.25);  // (13 - 4) x 0.05 s old: still held
+  EXPECT_EQ(at(13).plan_tick, 4U);
+  EXPECT_EQ(at(14).planned.action, traffic::ControlAction::failSafe());  // 0.5 s old
+  EXPECT_EQ(at(14).driven_by, DecidedVehicle::FULL_BRAKE);
 }
 
 TEST(PacedAnswers, DrivesOnByTheNextActionsOfThePlan) {

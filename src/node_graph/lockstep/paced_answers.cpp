@@ -14,7 +14,8 @@
 namespace cdiff::node_graph {
 namespace {
 
-constexpr double kOldest = 0.5;  // [s] of simulated time that a plan may drive without a newer one
+constexpr double kOldest =
+    0.5;  // [s] of simulated time from a decision on; its plan drives no longer
 constexpr double kRounding = 1e-6;  // [s], or rows of a plan; times are multiples of the step
 
 bool drivenIn(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_id) {
@@ -48,7 +49,7 @@ std::vector<planning::PlannedAction> actionsOf(const std::vector<AppliedAction>&
 
 bool PacedAnswers::fresh(const TickAnswers::TimedControl& control, std::uint64_t tick) const {
   const double age = static_cast<double>(tick - control.tick) * simulation_step_;
-  return control.control && age <= kOldest + kRounding;
+  return control.control && age < kOldest - kRounding;
 }
 
 std::optional<msgs::CbvSelection> PacedAnswers::selection(const msgs::TrafficSnapshot& snapshot,

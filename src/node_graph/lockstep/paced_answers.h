@@ -26,7 +26,7 @@ std::vector<planning::PlannedAction> actionsOf(const std::vector<AppliedAction>&
 
 /// Which actions move the world when wall-clock time rules (real_time_factor > 0): those of each
 /// vehicle's newest plan; while the next is late, that plan's next actions, and full braking once
-/// it is older than 0.5 s. A vehicle is taken over when its first action has arrived.
+/// it is 0.5 s old. A vehicle is taken over when its first action has arrived.
 class PacedAnswers {
  public:
   /// `simulation_step` in [s].
