@@ -30,9 +30,19 @@ endfunction()
 
 # cdiff_layer(NAME SOURCES file... LINK target...): library e2e_cdiff_NAME of src/NAME.
 function(cdiff_layer name)
+  cdiff_library(${name} SHARED ${ARGN})
+endfunction()
+
+# cdiff_module(NAME SOURCES file... LINK target...): library e2e_cdiff_NAME that a program loads when it needs it.
+function(cdiff_module name)
+  cdiff_library(${name} MODULE ${ARGN})
+endfunction()
+
+# What both have in common.
+function(cdiff_library name kind)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   set(target e2e_cdiff_${name})
-  add_library(${target} SHARED ${ARG_SOURCES})
+  add_library(${target} ${kind} ${ARG_SOURCES})
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                               $<INSTALL_INTERFACE:include>)
   target_compile_options(${target} PRIVATE ${CDIFF_PRIVATE_HEADERS} ${CDIFF_WARNINGS} -ffp-contract=off)

@@ -53,7 +53,7 @@ struct RunOutput {
   bool record = false;     ///< also write session.bag; InputError where built without ROS
   bool overwrite = false;  ///< what an earlier session left in the folder is removed
   std::optional<std::uint16_t> watch_port = {};  ///< of a live page; 0: a free one; absent: none
-  double answer_timeout = 30.0;                  ///< of one call of a plug-in, wall time [s]
+  double answer_timeout = 30.0;  ///< of one call of a plug-in or of libsumo, wall time [s]
 };
 
 bool isJudged(int exit_code) {
@@ -172,12 +172,17 @@ std::unique_ptr<watch::LiveSession> makeLiveSession(const session::SessionSetup&
   return live;
 }
 
-/// What a session with plug-ins keeps for the process that waits for this one; else nothing.
+/// Whether the session calls code of others that may end this process: plug-ins, or SUMO.
+bool mayCrash(const session::SessionSetup& setup) {
+  return !plugins::loadPlugins().empty() || setup.options().simulation.link == "libsumo";
+}
+
+/// What a session that may crash keeps for the process that waits for this one; else nothing.
 std::unique_ptr<session::SessionObserver> makeReserve(const session::SessionSetup& setup,
                                                       const RunOutput& output,
                                                       session::ClosedLoop& loop) {
 #ifdef E2E_CDIFF_WITH_ROS
-  if (plugins::loadPlugins().empty()) return nullptr;
+  if (!mayCrash(setup)) return nullptr;
   const node_graph::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
   auto reserve = std::make_unique<node_graph::ProcessReserve>(setup, output.folder, origin);
   loop.addObserver(*reserve);
@@ -215,7 +220,8 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
           watch::LiveSession* live, const std::atomic<bool>& stop, Clock::time_point begin) {
   const session::ScenarioOptions& options = setup.options();
   const auto reserve = makeReserve(setup, output, loop);
-  if (!reserve) loop.observeBeside();  // plug-ins may use what observers and planners share
+  // Plug-ins may use what observers and planners share.
+  if (plugins::loadPlugins().empty()) loop.observeBeside();
   page::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
                             output.folder);
   Progress progress(session::longestTime(options.protocol, setup.egoRoute()),
@@ -298,13 +304,13 @@ int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
 /// Runs to the end and answers the exit code. A stop ends the session as interrupted. Throws
 /// InputError for a scenario that SUMO refuses, and for a folder that is in use or holds an earlier
 /// result (nothing in it is touched then); a simulator that cannot start or is lost gives a result
-/// folder with status error. A session with plug-ins runs in a process of its own.
+/// folder with status error. A session that may crash runs in a process of its own.
 int runSession(PreparedRun& run, const std::atomic<bool>& stop) {
   for (const std::string& warning : session::scenarioWarnings(run.setup))
     std::cerr << "cdiff: warning: " << warning << "\n";
 #ifdef E2E_CDIFF_WITH_ROS
   const RunOutput& output = run.output;
-  if (!plugins::loadPlugins().empty()) {
+  if (mayCrash(run.setup)) {
     return runWatched(
         {run.setup, output.folder, output.overwrite, output.quiet, output.answer_timeout, stop},
         [&] { return runHere(run, stop); });
@@ -429,7 +435,7 @@ CLI::App* addRunOptions(CLI::App& program, RunArguments& arguments) {
       ->needs(watch);
   command
       ->add_option("--answer-timeout", arguments.answer_timeout,
-                   "Seconds of wall time for one call of a plug-in (default: 30)")
+                   "Seconds of wall time for one call of a plug-in or of libsumo (default: 30)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", arguments.quiet, "No progress line, no table");
   return command;

@@ -24,6 +24,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Kind of the call to a SUMO in this process.
+constexpr const char* kSimulatorCall = "simulator";
+
 /// The exit code of the session; errors are said as the main function says them.
 int guarded(const std::function<int()>& session) {
   try {
@@ -43,8 +46,10 @@ std::string sourceOf(const core::WorkEnd& end) {
   return "";
 }
 
-/// What ended the session, or all plug-ins where that is not known.
+/// What ended the session, or what may have done so where that is not known.
 std::string faultText(const core::WorkEnd& end) {
+  if (end.kind == kSimulatorCall)
+    return "SUMO ended the session, in whose process it ran: " + end.how;
   if (!end.kind.empty()) {
     return end.kind + " '" + end.name + "' of " + sourceOf(end) + " ended the session: " + end.how +
            "; its author must mend it";
@@ -52,8 +57,14 @@ std::string faultText(const core::WorkEnd& end) {
   std::vector<std::string> files;
   for (const plugins::LoadedPlugin& plugin : plugins::loadPlugins())
     files.push_back("'" + plugin.library.file.string() + "'");
-  return "the session ended before its result was written: " + end.how +
-         "; it had loaded the plug-in " + core::joinText(files, ", ");
+  const std::string text = "the session ended before its result was written: " + end.how;
+  return files.empty() ? text : text + "; it had loaded the plug-in " + core::joinText(files, ", ");
+}
+
+/// Who is to blame in the result's list of faults.
+std::string sourceName(const core::WorkEnd& end) {
+  if (end.kind == kSimulatorCall) return end.kind;
+  return end.kind.empty() ? "cdiff run" : end.kind + ":" + end.name;
 }
 
 /// Locks the folder that the copy had, or takes it where the copy had not yet begun.
@@ -78,7 +89,7 @@ int runWatched(const WatchedRun& run, const std::function<int()>& session) {
   if (end.exit_code) return *end.exit_code;
   node_graph::AbandonedSession abandoned;
   if (end.interrupted) abandoned.status = traffic::SessionStatus::kInterrupted;
-  abandoned.source = end.kind.empty() ? "cdiff run" : end.kind + ":" + end.name;
+  abandoned.source = sourceName(end);
   abandoned.text = faultText(end);
   abandoned.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   std::cerr << "cdiff: " << abandoned.text << "\n";

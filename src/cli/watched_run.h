@@ -10,13 +10,13 @@
 
 namespace cdiff::cli {
 
-/// A session whose plug-ins may end or stop the process that runs it.
+/// A session whose plug-ins, or whose SUMO, may end or stop the process that runs it.
 struct WatchedRun {
   const session::SessionSetup& setup;
   std::filesystem::path folder;   ///< of the result
   bool overwrite = false;         ///< of an earlier result there
   bool quiet = false;             ///< no table
-  double answer_timeout = 30.0;   ///< of one call of a planner or metric, wall time [s]
+  double answer_timeout = 30.0;   ///< of one call of a planner, a metric or SUMO, wall time [s]
   const std::atomic<bool>& stop;  ///< set by stop signals
 };
 

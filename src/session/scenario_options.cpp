@@ -129,6 +129,12 @@ void VerdictOptions::describe(core::OptionsVisitor& visitor) {
                statuses);
 }
 
+void SimulationOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text({"link", "",
+                "SUMO as a process, or in the session's own: faster, without sumo.step_timeout."},
+               link, {"libtraci", "libsumo"});
+}
+
 void EgoOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"command", "", "How an external ego commands (docs/test_your_ego.md)."}, command,
                {"control", "ackermann", "trajectory", "cmd_vel"});
@@ -217,6 +223,7 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
                 ego_rig);
   visitor.group({"cbv_rig", "", "Cameras of the CBVs, likewise."}, cbv_rig);
   visitor.group({"vehicle", "", "Dynamics of the vehicles that we drive."}, vehicle);
+  visitor.group({"simulation", "", "How the traffic is simulated."}, simulation);
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
 }
 

@@ -50,6 +50,13 @@ struct VerdictOptions {
   static VerdictOptions standard();
 };
 
+/// How the traffic is simulated.
+struct SimulationOptions {
+  std::string link = "libtraci";  ///< libtraci: SUMO as a process; libsumo: in the session's own
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
 /// What passes between the session and an external ego.
 struct EgoOptions {
   std::string command = "control";  ///< control | ackermann | trajectory | cmd_vel
@@ -105,6 +112,7 @@ struct ScenarioOptions {
   rendering::RigOptions ego_rig;           ///< cameras of the ego
   rendering::RigOptions cbv_rig;           ///< cameras of the CBVs
   dynamics::BicycleModelOptions vehicle;
+  SimulationOptions simulation;
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
   metrics::MetricsOptions metrics;

@@ -98,6 +98,7 @@ std::unique_ptr<simulation::TrafficSimulator> SessionSetup::makeSimulator() cons
   session.simulation_step = options_.simulation_step;
   session.seed = static_cast<std::uint64_t>(options_.seed);
   session.lights_green = options_.lights == "green";
+  session.link = options_.simulation.link;
   auto sumo = std::make_unique<simulation::SumoSimulator>(options_.sumo, session, network());
   if (play_ == nullptr) return sumo;
   return std::make_unique<storyboard::StoryboardTraffic>(std::move(sumo), *play_,

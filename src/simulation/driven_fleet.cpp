@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "simulation/driven_fleet.h"
 
-#include <libsumo/libtraci.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +12,6 @@
 
 namespace cdiff::simulation {
 namespace {
-
-using SumoVehicle = libtraci::Vehicle;
 
 constexpr double kGivenRouteLength = 250.0;  ///< set ahead of the current edge [m]
 constexpr double kRouteRefresh = 100.0;      ///< a new route is set when less is left [m]
@@ -48,8 +44,8 @@ double commandedSpeed(double speed, double ahead, double step) {
 }  // namespace
 
 void DrivenFleet::setModes(const std::string& id, int speed_mode) {
-  SumoVehicle::setSpeedMode(id, speed_mode);
-  SumoVehicle::setLaneChangeMode(id, kLaneChangeModeOff);
+  calls_.setSpeedMode(id, speed_mode);
+  calls_.setLaneChangeMode(id, kLaneChangeModeOff);
 }
 
 int DrivenFleet::edgeOf(const std::string& lane_id) const {
@@ -62,7 +58,7 @@ double DrivenFleet::sumoScale(map::LaneIndex index) {
   const auto known = scales_.find(index);
   if (known != scales_.end()) return known->second;
   const map::Lane& lane = graph_.network().lane(index);
-  const double scale = libtraci::Lane::getLength(lane.id) / lane.centerline.length();
+  const double scale = calls_.laneLength(lane.id) / lane.centerline.length();
   return scales_.emplace(index, scale).first->second;
 }
 
@@ -83,8 +79,8 @@ void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensio
   }
   moved.given = moved.route.edgesFrom(edge, kGivenRouteLength);
   const std::string route_id = "driven_" + std::to_string(added_++) + "_" + start.id;
-  libtraci::Route::add(route_id, graph_.ids(moved.given));
-  SumoVehicle::add(start.id, route_id, type_id, "now", "first", "0", "0");
+  calls_.addRoute(route_id, graph_.ids(moved.given));
+  calls_.addVehicle(start.id, route_id, type_id, {});
   setModes(start.id, kSpeedModeOff);
   forget(start.id);
   vehicles_.emplace(start.id, std::move(moved));
@@ -96,7 +92,7 @@ void DrivenFleet::forget(const std::string& id) {
 }
 
 bool DrivenFleet::setRoute(const std::string& id, Moved& moved, const std::vector<int>& edges) {
-  if (!link_.attempt([&] { SumoVehicle::setRoute(id, graph_.ids(edges)); })) return false;
+  if (!link_.attempt([&] { calls_.setRoute(id, graph_.ids(edges)); })) return false;
   moved.given = edges;
   return true;
 }
@@ -144,7 +140,7 @@ double DrivenFleet::usableLength(map::LaneIndex lane, const Moved& moved) const 
 bool DrivenFleet::putOnLane(const std::string& id, const LanePlace& place) {
   const std::string& lane_id = graph_.network().lane(place.lane).id;
   const double position = place.arc_length * sumoScale(place.lane);
-  return link_.attempt([&] { SumoVehicle::moveTo(id, lane_id, position); });
+  return link_.attempt([&] { calls_.moveTo(id, lane_id, position); });
 }
 
 bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place) {
@@ -167,7 +163,7 @@ bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const Front
   }
   double speed = commandedSpeed(moved.state.speed, *target->ahead, step_);
   if (excess > 0.0) speed = std::clamp(*target->ahead / step_, 0.0, speed);
-  if (speed != moved.speed) SumoVehicle::setSpeed(id, speed);
+  if (speed != moved.speed) calls_.setSpeed(id, speed);
   moved.speed = speed;
   moved.along_lane = true;
   moved.placed = false;
@@ -190,7 +186,7 @@ void DrivenFleet::keepToLane(const std::string& id, Moved& moved, const FrontPla
   const double ahead = line.project(place.position).arc_length - moved.place.arc_length;
   moved.speed = commandedSpeed(moved.state.speed, ahead, step_);
   moved.placed = false;
-  SumoVehicle::setSpeed(id, moved.speed);
+  calls_.setSpeed(id, moved.speed);
 }
 
 bool DrivenFleet::onAnotherLane(const FrontPlace& place, map::LaneIndex lane) const {
@@ -209,7 +205,7 @@ bool DrivenFleet::stayOnLane(const std::string& id, Moved& moved, const FrontPla
   const double reach = 0.5 * (lane.width + moved.route.dimensions().width) + kReachMargin;
   if (here.distance > reach || onAnotherLane(place, moved.place.lane)) return false;
   if (!putOnLane(id, {moved.place.lane, here.arc_length})) return false;
-  if (moved.speed != 0.0) SumoVehicle::setSpeed(id, 0.0);
+  if (moved.speed != 0.0) calls_.setSpeed(id, 0.0);
   moved.speed = 0.0;
   moved.along_lane = false;
   moved.placed = true;
@@ -227,9 +223,8 @@ void DrivenFleet::moveFreely(const std::string& id, Moved& moved, const FrontPla
     index = lane.index;
   }
   const bool first = !moved.reported && moved.on_route;
-  SumoVehicle::moveToXY(id, edge, index, place.position.x(), place.position.y(),
-                        angleFromHeading(moved.state.heading), first ? kKeepRouteExact : kAnywhere,
-                        match_threshold_);
+  calls_.moveFreely(id, {edge, index, place.position, angleFromHeading(moved.state.heading),
+                         first ? kKeepRouteExact : kAnywhere, match_threshold_});
   moved.along_lane = false;
 }
 
@@ -280,8 +275,6 @@ constexpr double kReachTime = 0.8;         ///< the same at speed [s]
 constexpr double kLargestCurvature = 0.2;  ///< of the vehicle against its lane [1/m]
 constexpr double kSettledOffset = 0.01;    ///< [m]
 constexpr double kSettledHeading = 0.005;  ///< [rad]
-
-using SumoVehicle = libtraci::Vehicle;
 
 constexpr double kReleasedRouteLength = 600.0;       ///< given at the release [m]
 constexpr double kReleaseHeading = core::kPi / 6.0;  ///< between vehicle and lane [rad]
@@ -344,7 +337,7 @@ void DrivenFleet::takeOver(const SimulatedVehicle& vehicle) {
   Moved moved(DrivenRoute(graph_, vehicle.dimensions));
   moved.on_route = true;
   moved.outdated = true;
-  for (const std::string& edge : SumoVehicle::getRoute(vehicle.id)) {
+  for (const std::string& edge : calls_.routeOf(vehicle.id)) {
     moved.given.push_back(graph_.find(edge));
   }
   note(moved, vehicle);
@@ -373,8 +366,8 @@ bool DrivenFleet::release(const DrivenVehicle& vehicle) {
   if (std::abs(turned) > kReleaseHeading) return false;
   if (mayJump(moved) && !putOnLane(vehicle.id, target->place)) return false;
   setModes(vehicle.id, kSpeedModeDefault);
-  SumoVehicle::setPreviousSpeed(vehicle.id, vehicle.state.speed, 0.0);
-  SumoVehicle::setSpeed(vehicle.id, -1.0);
+  calls_.setPreviousSpeed(vehicle.id, vehicle.state.speed);
+  calls_.setSpeed(vehicle.id, -1.0);
   const Released released{SettlingMotion(vehicle.state, length), false, kLaneChangePause};
   forget(vehicle.id);
   released_.emplace(vehicle.id, released);
@@ -389,7 +382,7 @@ bool DrivenFleet::settle(SimulatedVehicle& vehicle, Released& released) {
   }
   released.left -= step_;
   if (released.left > 0.0) return true;
-  link_.attempt([&] { SumoVehicle::setLaneChangeMode(vehicle.id, kLaneChangeModeDefault); });
+  link_.attempt([&] { calls_.setLaneChangeMode(vehicle.id, kLaneChangeModeDefault); });
   return false;
 }
 

@@ -51,7 +51,11 @@ class DrivenFleet {
   /// References must outlive the fleet. `match_threshold`: how far from a lane SUMO looks for one
   /// [m]; `step`: of the simulation [s].
   DrivenFleet(SumoLink& link, const EdgeGraph& graph, double match_threshold, double step)
-      : link_(link), graph_(graph), match_threshold_(match_threshold), step_(step) {}
+      : link_(link),
+        calls_(link.calls()),
+        graph_(graph),
+        match_threshold_(match_threshold),
+        step_(step) {}
 
   bool contains(const std::string& id) const { return vehicles_.count(id) != 0; }
   /// Adds a vehicle to SUMO that is moved from its first step on.
@@ -99,7 +103,7 @@ class DrivenFleet {
     bool settled = false;
     double left = 0.0;  ///< until lane changes are allowed again [s]
   };
-  static void setModes(const std::string& id, int speed_mode);
+  void setModes(const std::string& id, int speed_mode);
   void note(Moved& moved, const SimulatedVehicle& vehicle) const;
   bool changesLane(const Moved& moved) const;
   static void leaveRoute(Moved& moved);
@@ -127,6 +131,7 @@ class DrivenFleet {
   bool settle(SimulatedVehicle& vehicle, Released& released);
 
   SumoLink& link_;
+  const SumoCalls& calls_;
   const EdgeGraph& graph_;
   double match_threshold_;
   double step_;

@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "simulation/sumo_simulator.h"
 
-#include <libsumo/libtraci.h>
-
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -67,6 +65,8 @@ class SumoSimulator::Connection {
         graph_(network),
         started_(startSumo(options, session)),
         link_(*started_),
+        calls_(link_.calls()),
+        observer_(calls_),
         fleet_(link_, graph_, options.match_threshold, session.simulation_step) {
     link_.guarded("start", [&] { observer_.start(session.lights_green); });
     if (session.lights_green) right_of_way_.emplace(network, observer_.signals());
@@ -127,10 +127,10 @@ class SumoSimulator::Connection {
     const std::string route_id = "route_" + id;
     const bool added = link_.guarded("adding vehicle '" + id + "'", [&] {
       return link_.attempt([&] {
-        libtraci::Route::add(route_id, edges);
-        libtraci::Vehicle::add(id, route_id, typeFor(dimensions), "now",
-                               std::to_string(depart_lane), core::formatNumber(depart_position),
-                               core::formatNumber(depart_speed));
+        calls_.addRoute(route_id, edges);
+        calls_.addVehicle(id, route_id, typeFor(dimensions),
+                          {std::to_string(depart_lane), core::formatNumber(depart_position),
+                           core::formatNumber(depart_speed)});
       });
     });
     if (added) waiting_.push_back(id);
@@ -145,7 +145,7 @@ class SumoSimulator::Connection {
     }
     {
       const core::TimedStage stage("sumo_step");
-      libtraci::Simulation::step();
+      calls_.step();
     }
     {
       const core::TimedStage stage("reading");
@@ -173,11 +173,11 @@ class SumoSimulator::Connection {
     for (const RightOfWayChange& change : changes.vehicles) {
       if (observer_.find(change.vehicle_id) == nullptr || fleet_.contains(change.vehicle_id))
         continue;
-      libtraci::Vehicle::setSpeedMode(change.vehicle_id,
-                                      change.may_go ? kDisregardRightOfWay : kUsualSpeedMode);
+      calls_.setSpeedMode(change.vehicle_id,
+                          change.may_go ? kDisregardRightOfWay : kUsualSpeedMode);
     }
     for (const traffic::SignalState& signal : changes.signals) {
-      libtraci::TrafficLight::setRedYellowGreenState(signal.id, signal.state);
+      calls_.setLightState(signal.id, signal.state);
       observer_.show(signal);
     }
   }
@@ -195,9 +195,9 @@ class SumoSimulator::Connection {
   /// No error when it is gone already.
   void takeOut(const std::string& id) {
     if (observer_.find(id) != nullptr) {
-      link_.attempt([&] { libtraci::Vehicle::unsubscribe(id); });
+      link_.attempt([&] { calls_.unsubscribe(id); });
     }
-    link_.attempt([&] { libtraci::Vehicle::remove(id, libsumo::REMOVE_VAPORIZED); });
+    link_.attempt([&] { calls_.removeVehicle(id); });
   }
 
   /// One vehicle type per size: SUMO's passenger car without dawdling; drivers differ by SUMO's
@@ -206,13 +206,7 @@ class SumoSimulator::Connection {
     const std::string id = "car_" + core::formatNumber(dimensions.length) + "_" +
                            core::formatNumber(dimensions.width) + "_" +
                            core::formatNumber(dimensions.height);
-    if (!types_.insert(id).second) return id;
-    using Type = libtraci::VehicleType;
-    Type::copy("DEFAULT_VEHTYPE", id);
-    Type::setLength(id, dimensions.length);
-    Type::setWidth(id, dimensions.width);
-    Type::setHeight(id, dimensions.height);
-    Type::setImperfection(id, 0.0);
+    if (types_.insert(id).second) calls_.addType(id, dimensions);
     return id;
   }
 
@@ -221,6 +215,7 @@ class SumoSimulator::Connection {
   EdgeGraph graph_;
   std::unique_ptr<SumoLink> started_;
   SumoLink& link_;
+  const SumoCalls& calls_;
   TrafficObserver observer_;
   DrivenFleet fleet_;
   std::optional<RightOfWay> right_of_way_;  ///< when all lights are green

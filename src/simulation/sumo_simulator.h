@@ -31,16 +31,18 @@ struct SumoSession {
   double simulation_step = 0.05;         ///< [s]
   std::uint64_t seed = 1;
   bool lights_green = true;          ///< every signal shows 'g' for the whole session
+  std::string link = "libtraci";     ///< libtraci: SUMO as a process; libsumo: in this process
   std::filesystem::path log_folder;  ///< SUMO's error log; a temporary folder when empty
 };
 
-/// TrafficSimulator on SUMO through libtraci (units and frames as in the base class): owns the SUMO
-/// process and reads it by subscriptions. Every failure of SUMO becomes a SimulatorError that
+/// TrafficSimulator on SUMO (units and frames as in the base class): owns the session with SUMO and
+/// reads it by subscriptions. Every failure of SUMO becomes a SimulatorError that
 /// quotes SUMO's own log, or an InputError where the network or the demand is at fault.
 class SumoSimulator : public TrafficSimulator {
  public:
   /// Starts SUMO and connects. `network` must outlive the simulator. Throws InputError that names
-  /// the network or the demand and quotes SUMO when SUMO refuses one of them or crashes on it.
+  /// the network or the demand and quotes SUMO when SUMO refuses one of them or crashes on it, or
+  /// that says that libsumo is missing. With libsumo a process has one simulator at a time.
   SumoSimulator(const SumoOptions& options, const SumoSession& session,
                 const map::RoadNetwork& network);
   /// Ends the SUMO process that it started, and only that one.
@@ -59,7 +61,7 @@ class SumoSimulator : public TrafficSimulator {
   const std::vector<traffic::SignalState>& signals() const override;
   std::string version() const override;
 
-  /// Process id of SUMO, for tests of its loss.
+  /// Process id of SUMO, for tests of its loss; that of this process with libsumo.
   int processId() const;
 
  private:

@@ -7,8 +7,9 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "simulation/in_process_link.h"
 #include "simulation/sumo_input_rules.h"
-#include "simulation/sumo_link.h"
+#include "simulation/traci_link.h"
 
 namespace cdiff::simulation {
 namespace {
@@ -79,13 +80,20 @@ void requireHarmless(const SumoSession& session) {
   requireHarmlessDemand(core::readFile(session.demand_file, "demand"), demand);
 }
 
+std::unique_ptr<SumoLink> linkTo(const SumoOptions& options, const SumoSession& session) {
+  const SumoCommand command = commandFor(options, session);
+  if (session.link == "libsumo")
+    return std::make_unique<InProcessLink>(command.arguments, command.log_folder);
+  return std::make_unique<TraciLink>(command, options.step_timeout);
+}
+
 /// Whether SUMO refuses the network even without a demand.
 bool refusesNetwork(const SumoOptions& options, const SumoSession& session) {
   SumoSession network_alone = session;
   network_alone.demand_file.clear();
   network_alone.log_folder.clear();
   try {
-    const SumoLink link(commandFor(options, network_alone), options.step_timeout);
+    linkTo(options, network_alone);
     return false;
   } catch (const SumoRefusal&) {
     return true;
@@ -102,7 +110,7 @@ void refuseDemand(const SumoSession& session, const std::string& sentence) {
 std::unique_ptr<SumoLink> startSumo(const SumoOptions& options, const SumoSession& session) {
   requireHarmless(session);
   try {
-    return std::make_unique<SumoLink>(commandFor(options, session), options.step_timeout);
+    return linkTo(options, session);
   } catch (const SumoRefusal& refusal) {
     if (!session.demand_file.empty() && !refusesNetwork(options, session))
       refuseDemand(session, refusal.what());

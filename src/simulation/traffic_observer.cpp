@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "simulation/traffic_observer.h"
 
-#include <libsumo/libtraci.h>
+#include <libsumo/TraCIConstants.h>
 
 #include <algorithm>
 
@@ -80,37 +80,34 @@ bool endsAtJunction(const map::RoadNetwork& network, const map::Lane& lane) {
 
 void TrafficObserver::start(bool lights_green) {
   lights_green_ = lights_green;
-  for (const std::string& id : libtraci::TrafficLight::getIDList()) {
-    std::string state = libtraci::TrafficLight::getRedYellowGreenState(id);
+  for (const std::string& id : calls_.lights()) {
+    std::string state = calls_.lightState(id);
     if (lights_green) {
       state.assign(state.size(), 'g');
-      libtraci::TrafficLight::setRedYellowGreenState(id, state);
+      calls_.setLightState(id, state);
     } else {
-      libtraci::TrafficLight::subscribe(id, {libsumo::TL_RED_YELLOW_GREEN_STATE});
+      calls_.subscribeToLight(id, {libsumo::TL_RED_YELLOW_GREEN_STATE});
     }
     signals_.push_back({id, state});
   }
   std::sort(signals_.begin(), signals_.end(),
             [](const auto& first, const auto& second) { return first.id < second.id; });
-  libtraci::Simulation::subscribe(std::vector<int>{libsumo::VAR_DEPARTED_VEHICLES_IDS});
+  calls_.subscribeToSimulation({libsumo::VAR_DEPARTED_VEHICLES_IDS});
 }
 
 void TrafficObserver::subscribe(const std::string& id) {
-  const std::string type = libtraci::Vehicle::getTypeID(id);
+  const std::string type = calls_.typeOf(id);
   auto known = dimensions_of_type_.find(type);
   if (known == dimensions_of_type_.end()) {
-    const traffic::VehicleDimensions dimensions{libtraci::VehicleType::getLength(type),
-                                                libtraci::VehicleType::getWidth(type),
-                                                libtraci::VehicleType::getHeight(type)};
-    known = dimensions_of_type_.emplace(type, dimensions).first;
+    known = dimensions_of_type_.emplace(type, calls_.typeDimensions(type)).first;
   }
   dimensions_[id] = known->second;
-  libtraci::Vehicle::subscribe(id, {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE, libsumo::VAR_SPEED,
-                                    libsumo::VAR_ACCELERATION, libsumo::VAR_LANE_ID});
+  calls_.subscribe(id, {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE, libsumo::VAR_SPEED,
+                        libsumo::VAR_ACCELERATION, libsumo::VAR_LANE_ID});
 }
 
 void TrafficObserver::read() {
-  const TraCIResults simulation = libtraci::Simulation::getSubscriptionResults();
+  const TraCIResults simulation = calls_.simulationResults();
   const auto departed = simulation.find(libsumo::VAR_DEPARTED_VEHICLES_IDS);
   if (departed != simulation.end()) {
     const auto ids = std::static_pointer_cast<libsumo::TraCIStringList>(departed->second);
@@ -128,7 +125,7 @@ void TrafficObserver::read() {
 void TrafficObserver::readVehicles() {
   vehicles_.clear();
   auto known = dimensions_.begin();
-  for (const auto& [id, results] : libtraci::Vehicle::getAllSubscriptionResults()) {
+  for (const auto& [id, results] : calls_.vehicleResults()) {
     while (known != dimensions_.end() && known->first < id) known = dimensions_.erase(known);
     if (known == dimensions_.end()) break;
     if (known->first != id) continue;
@@ -148,7 +145,7 @@ void TrafficObserver::show(const traffic::SignalState& changed) {
 
 void TrafficObserver::readSignals() {
   if (lights_green_) return;
-  const libsumo::SubscriptionResults all = libtraci::TrafficLight::getAllSubscriptionResults();
+  const libsumo::SubscriptionResults all = calls_.lightResults();
   for (traffic::SignalState& signal : signals_) {
     const auto found = all.find(signal.id);
     if (found == all.end()) continue;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/sumo_calls.h"
 #include "simulation/traffic_simulator.h"
 
 namespace cdiff::simulation {
@@ -16,6 +17,8 @@ namespace cdiff::simulation {
 /// Its methods are called inside SumoLink::guarded.
 class TrafficObserver {
  public:
+  /// `calls` must outlive the observer.
+  explicit TrafficObserver(const SumoCalls& calls) : calls_(calls) {}
   /// Subscribes to departures and traffic lights. `lights_green`: every light is set to 'g' first
   /// and for good: vehicles still yield as at a junction without light.
   void start(bool lights_green);
@@ -39,6 +42,7 @@ class TrafficObserver {
   void readVehicles();
   void readSignals();
 
+  const SumoCalls& calls_;
   bool lights_green_ = true;
   std::vector<SimulatedVehicle> vehicles_;
   std::vector<traffic::SignalState> signals_;

@@ -15,7 +15,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/crossing_world.h"
-#include "simulation/sumo_link.h"
+#include "simulation/traci_link.h"
 
 namespace cdiff {
 namespace {
@@ -193,10 +193,16 @@ TEST(SumoStart, NamesAMissingNetwork) {
   EXPECT_NE(error.find("none.net.xml"), std::string::npos) << error;
 }
 
-TEST(SumoStart, NamesTheNetworkOrDemandThatSumoRefusesAndQuotesIt) {
+/// SUMO as a process, and in this one.
+class SumoRefusals : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(ByLink, SumoRefusals, testing::Values("libtraci", "libsumo"));
+
+TEST_P(SumoRefusals, NameTheNetworkOrDemandAndQuoteSumo) {
   const test::TemporaryFolder folder;
   const test::SumoNetwork made = test::makeCrossing(folder, false);
   SumoSession session;
+  session.link = GetParam();
   session.network_file = folder.path() / "broken.net.xml";
   session.demand_file = folder.path() / "bad.rou.xml";
   std::ofstream(session.network_file) << "<net><edge id=\"a\" from=\"x\"/></net>";
@@ -219,10 +225,11 @@ TEST(SumoStart, NamesTheNetworkOrDemandThatSumoRefusesAndQuotesIt) {
   EXPECT_NE(error.find("nowhere"), std::string::npos) << error;
 }
 
-TEST(SumoStart, ADemandThatSumoRefusesWhileItRunsIsNamed) {
+TEST_P(SumoRefusals, NameADemandThatSumoRefusesWhileItRuns) {
   const test::TemporaryFolder folder;
   const test::SumoNetwork made = test::makeCrossing(folder, false);
   SumoSession session;
+  session.link = GetParam();
   session.network_file = made.file;
   session.demand_file = folder.path() / "late.rou.xml";
   // A lane that its edge does not have is noticed at the departure.
