@@ -10,6 +10,7 @@
 #include "node_graph/session_launch.h"
 #include "nodelet/NodeletUnload.h"
 #include "ros/ros.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff {
 namespace {
@@ -73,43 +74,86 @@ std::string script(const test::LaunchedSession& session) {
          session.results().string() + " " + kLong;
 }
 
-class NodeletCrash : public ::testing::TestWithParam<int> {};
+/// Who ends the process of all nodes, by which signal.
+struct Crash {
+  const char* nodelet;  ///< from inside; empty: from outside
+  int signal;
+};
 
-/// The trace of the ticks that were driven before the end.
-std::string wholeTrace(const fs::path& folder) {
-  session::SessionRequest request;
-  request.scenario = "crossing_straight";
-  request.cbv_planner = "pdm_lite";
-  request.set = {"protocol.time_limit=60"};
-  test::runInOneProcess(request, folder);
-  return core::readFile(folder / "trace.csv", "trace");
+std::string nameOf(const ::testing::TestParamInfo<Crash>& info) {
+  const std::string nodelet = info.param.nodelet;
+  return (nodelet.empty() ? "outside" : nodelet) + "_" + std::to_string(info.param.signal);
+}
+
+class NodeletCrash : public ::testing::TestWithParam<Crash> {
+ protected:
+  /// A session in which every node takes part.
+  std::string command() const {
+    return "export CRASHING_NODELET=" + order().string() + " LD_PRELOAD=" CRASHING_NODELET "; " +
+           script(session_) + " camera:=true";
+  }
+  bool crash() {
+    const auto& [nodelet, signal] = GetParam();
+    if (nodelet[0] == '\0') return session_.signal("session_nodelets", signal);
+    core::writeFileAtomically(order(), std::string(nodelet) + " " + std::to_string(signal));
+    return true;
+  }
+  fs::path order() const { return session_.folder() / "order"; }
+
+  test::LaunchedSession session_;
+};
+
+/// The trace of the session as it would have gone on.
+const std::string& wholeTrace() {
+  static const std::string trace = [] {
+    const test::TemporaryFolder folder;
+    session::SessionRequest request;
+    request.scenario = "crossing_straight";
+    request.cbv_planner = "pdm_lite";
+    request.set = {"protocol.time_limit=60"};
+    test::runInOneProcess(request, folder.path() / "results");
+    return core::readFile(folder.path() / "results" / "trace.csv", "trace");
+  }();
+  return trace;
 }
 
 // The simulator's record has all ticks but those that its process had not handed to the system.
 TEST_P(NodeletCrash, LeavesTheResultOfTheTicksBefore) {
-  test::LaunchedSession session;
-  session.start(script(session));
-  ASSERT_TRUE(session.hasTicks()) << session.log();
-  ASSERT_TRUE(session.signal("session_nodelets", GetParam()));
-  EXPECT_LT(session.endAfter(60.0), 60.0);
-  EXPECT_EQ(session.exitStatus(), 2) << session.log();
-  EXPECT_EQ(session.exitCode(), "2\n") << session.log();
-  EXPECT_EQ(session.summary()["status"], "error");
-  EXPECT_EQ(session.fault(),
+  session_.start(command());
+  ASSERT_TRUE(session_.hasTicks()) << session_.log();
+  ASSERT_TRUE(crash());
+  EXPECT_LT(session_.endAfter(60.0), 60.0);
+  EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
+  EXPECT_EQ(session_.exitCode(), "2\n") << session_.log();
+  EXPECT_EQ(session_.summary()["status"], "error");
+  EXPECT_EQ(session_.fault(),
             "session_nodelets: the process of all nodes ended before the session did, by signal " +
-                std::to_string(GetParam()))
-      << session.log();
-  const std::string trace = core::readFile(session.results() / "trace.csv", "trace");
+                std::to_string(GetParam().signal))
+      << session_.log();
+  const std::string trace = core::readFile(session_.results() / "trace.csv", "trace");
   constexpr std::size_t kEnd =
       8000;  // [bytes] more than the last tick, which repeats the one before
   ASSERT_GT(trace.size(), 2 * kEnd);
   const std::string driven = trace.substr(0, trace.size() - kEnd);
-  EXPECT_EQ(wholeTrace(session.folder() / "one_process").substr(0, driven.size()), driven);
-  EXPECT_FALSE(fs::exists(session.results() / ".reserve"));
-  EXPECT_EQ(session.leftovers(), "");
+  EXPECT_EQ(wholeTrace().substr(0, driven.size()), driven);
+  EXPECT_FALSE(fs::exists(session_.results() / ".reserve"));
+  EXPECT_EQ(session_.leftovers(), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(NodeletCrash, NodeletCrash, ::testing::Values(SIGSEGV, SIGKILL));
+INSTANTIATE_TEST_SUITE_P(Outside, NodeletCrash,
+                         ::testing::Values(Crash{"", SIGSEGV}, Crash{"", SIGKILL}), nameOf);
+INSTANTIATE_TEST_SUITE_P(
+    Inside, NodeletCrash,
+    ::testing::Values(Crash{"cbv_identification_node", SIGSEGV}, Crash{"camera_node", SIGSEGV},
+                      Crash{"recorder_node", SIGSEGV}, Crash{"traffic_simulator_node", SIGSEGV},
+                      Crash{"cbv_planner_node", SIGSEGV}, Crash{"metrics_node", SIGSEGV}),
+    nameOf);
+INSTANTIATE_TEST_SUITE_P(
+    KilledInside, NodeletCrash,
+    ::testing::Values(Crash{"cbv_identification_node", SIGKILL}, Crash{"camera_node", SIGKILL},
+                      Crash{"recorder_node", SIGKILL}, Crash{"traffic_simulator_node", SIGKILL},
+                      Crash{"cbv_planner_node", SIGKILL}, Crash{"metrics_node", SIGKILL}),
+    nameOf);
 
 /// A session with the crashing plug-in.
 std::string scriptWithPlugin(const test::LaunchedSession& session, const std::string& variables,
