@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <libsumo/libtraci.h>
+#include <libsumo/TraCIConstants.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "benchmark.h"
@@ -16,13 +17,15 @@
 #include "page/result_writer.h"
 #include "session/closed_loop.h"
 #include "session/session_request.h"
+#include "simulation/sumo_link.h"
+#include "simulation/sumo_start.h"
 
 namespace cdiff::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
 
-session::ScenarioOptions town05(std::int64_t seed) {
+session::ScenarioOptions town05(std::int64_t seed, const std::string& link = "libtraci") {
   const fs::path data = dataFolder();
   session::SessionRequest request;
   request.bench2drive = (data / "bench2drive" / "bench2drive220.xml").string();
@@ -30,9 +33,10 @@ session::ScenarioOptions town05(std::int64_t seed) {
   request.network = (data / "carla_towns" / "Town05.net.xml").string();
   request.seed = std::to_string(seed);
   request.cbv_planner = "pdm_lite";  // the loop, not the denoising
-  request.set = {"traffic.density=50",  "traffic.forget_distance=160",
-                 "max_cbv=2",           "protocol.blocked_time=1000",
-                 "verdict.judge=false", "protocol.time_limit=60"};
+  request.set = {"simulation.link=" + link,     "traffic.density=50",
+                 "traffic.forget_distance=160", "max_cbv=2",
+                 "protocol.blocked_time=1000",  "verdict.judge=false",
+                 "protocol.time_limit=60"};
   return session::resolveRequest(request);
 }
 
@@ -75,24 +79,25 @@ LoopResult runLoop(const session::SessionSetup& setup, Results results, const fs
   return result;
 }
 
-/// Nothing but libtraci: the same town, demand, density, subscriptions and number of moved
-/// vehicles.
+/// Nothing but SUMO behind one of its links: the same town, demand, density, subscriptions and
+/// number of moved vehicles.
 class BareTraffic {
  public:
   explicit BareTraffic(const session::SessionSetup& setup)
-      : setup_(setup), demand_(setup.options().traffic, setup.graph(), setup.egoRoute(), 1) {
-    libtraci::Simulation::start({"sumo", "-n", setup.import().file.string(), "--step-length",
-                                 "0.05", "--no-step-log", "--no-warnings", "--collision.action",
-                                 "none", "--xml-validation", "never", "--time-to-teleport", "-1",
-                                 "--lanechange.duration", "3"});
+      : setup_(setup),
+        demand_(setup.options().traffic, setup.graph(), setup.egoRoute(), 1),
+        link_(simulation::startSumo(setup.options().sumo, sumoSession(setup))),
+        calls_(link_->calls()) {
     fill(true);
-    libtraci::Simulation::step();
-    for (const std::string& id : libtraci::Vehicle::getIDList()) {
+    calls_.step();
+    seen_ = calls_.vehicleResults();
+    for (const auto& [id, values] : seen_) {
       if (moved_.size() == kMoved) break;
-      moved_.push_back({id, libtraci::Vehicle::getPosition(id), libtraci::Vehicle::getAngle(id)});
+      const auto angle =
+          std::static_pointer_cast<libsumo::TraCIDouble>(values.at(libsumo::VAR_ANGLE));
+      moved_.push_back({id, {"", -1, placeOf(values), angle->value, kKeepRoute, kThreshold}});
     }
   }
-  ~BareTraffic() { libtraci::Simulation::close(); }
 
   /// Seconds of so many ticks, and their vehicles; what fills the traffic up is not counted.
   double run(std::size_t ticks, double& vehicles) {
@@ -100,11 +105,9 @@ class BareTraffic {
     for (std::size_t tick = 0; tick < ticks; ++tick) {
       if (tick % 20 == 19) fill(false);
       seconds += secondsOf([&] {
-        for (const Moved& each : moved_)
-          libtraci::Vehicle::moveToXY(each.id, "", -1, each.place.x, each.place.y, each.angle, 3,
-                                      20.0);
-        libtraci::Simulation::step();
-        seen_ = libtraci::Vehicle::getAllSubscriptionResults();
+        for (const Moved& each : moved_) calls_.moveFreely(each.id, each.place);
+        calls_.step();
+        seen_ = calls_.vehicleResults();
       });
       vehicles += static_cast<double>(seen_.size()) / static_cast<double>(ticks);
     }
@@ -113,11 +116,19 @@ class BareTraffic {
 
  private:
   static constexpr std::size_t kMoved = 3;
+  static constexpr int kKeepRoute = 3;
+  static constexpr double kThreshold = 20.0;  // [m]
   struct Moved {
     std::string id;
-    libsumo::TraCIPosition place;
-    double angle = 0.0;
+    simulation::FreePlace place;
   };
+
+  static simulation::SumoSession sumoSession(const session::SessionSetup& setup) {
+    simulation::SumoSession session;
+    session.network_file = setup.import().file;
+    session.link = setup.options().simulation.link;
+    return session;
+  }
 
   void fill(bool at_start) {
     constexpr std::size_t kVehicles = 55;
@@ -131,40 +142,43 @@ class BareTraffic {
           wanted->edges.front())[static_cast<std::size_t>(wanted->depart_lane)];
       const Eigen::Vector3d place =
           setup_.network().lane(lane).centerline.pointAt(wanted->depart_position);
-      present.push_back(vehicleAt(wanted->id, place.x(), place.y()));
+      present.push_back(vehicleAt(wanted->id, place.head<2>()));
     }
   }
 
   void add(const simulation::DemandVehicle& wanted) {
-    libtraci::Route::add("route_" + wanted.id, wanted.edges);
-    libtraci::Vehicle::add(wanted.id, "route_" + wanted.id, "DEFAULT_VEHTYPE", "now",
-                           std::to_string(wanted.depart_lane),
-                           std::to_string(wanted.depart_position),
-                           std::to_string(wanted.depart_speed));
-    libtraci::Vehicle::subscribe(wanted.id,
-                                 {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE, libsumo::VAR_SPEED,
-                                  libsumo::VAR_ACCELERATION, libsumo::VAR_LANE_ID});
+    calls_.addRoute("route_" + wanted.id, wanted.edges);
+    calls_.addVehicle(wanted.id, "route_" + wanted.id, "DEFAULT_VEHTYPE",
+                      {std::to_string(wanted.depart_lane), std::to_string(wanted.depart_position),
+                       std::to_string(wanted.depart_speed)});
+    calls_.subscribe(wanted.id, {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE, libsumo::VAR_SPEED,
+                                 libsumo::VAR_ACCELERATION, libsumo::VAR_LANE_ID});
   }
 
-  static traffic::Vehicle vehicleAt(const std::string& id, double x, double y) {
+  /// Front bumper of a vehicle in what SUMO reports of it.
+  static Eigen::Vector2d placeOf(const libsumo::TraCIResults& values) {
+    const auto place =
+        std::static_pointer_cast<libsumo::TraCIPosition>(values.at(libsumo::VAR_POSITION3D));
+    return {place->x, place->y};
+  }
+
+  static traffic::Vehicle vehicleAt(const std::string& id, const Eigen::Vector2d& position) {
     traffic::Vehicle vehicle;
     vehicle.id = id;
-    vehicle.state.position = {x, y};
+    vehicle.state.position = position;
     return vehicle;
   }
 
   std::vector<traffic::Vehicle> presentVehicles() const {
     std::vector<traffic::Vehicle> vehicles;
-    for (const auto& [id, values] : seen_) {
-      const auto place =
-          std::static_pointer_cast<libsumo::TraCIPosition>(values.at(libsumo::VAR_POSITION3D));
-      vehicles.push_back(vehicleAt(id, place->x, place->y));
-    }
+    for (const auto& [id, values] : seen_) vehicles.push_back(vehicleAt(id, placeOf(values)));
     return vehicles;
   }
 
   const session::SessionSetup& setup_;
   simulation::DemandGenerator demand_;
+  std::unique_ptr<simulation::SumoLink> link_;
+  const simulation::SumoCalls& calls_;
   std::vector<Moved> moved_;
   libsumo::SubscriptionResults seen_;
 };
@@ -200,15 +214,33 @@ std::vector<double> nodeGraphLoop(const fs::path& folder) {
 /// What the sessions of all seeds give.
 struct LoopRates {
   std::vector<double> full, one_thread, without_results, bare;  ///< [ticks/s]
+  std::vector<double> in_process, bare_in_process;              ///< with libsumo [ticks/s]
+  std::vector<double> gain;                                     ///< of libsumo [times]
   std::vector<double> share, sumo_share;                        ///< [%]
   std::vector<double> vehicles, bare_vehicles, cbvs;            ///< a tick
   std::map<std::string, std::vector<double>> stages;            ///< [us/tick]
 };
 
+/// Makes the drivable area, which cdiff run does while SUMO starts.
+void makeStartLevel(const session::SessionSetup& setup) {
+  setup.drivableArea().contains(setup.egoRoute().path().pointAt(0.0).head<2>());
+}
+
+/// The same with SUMO in this process, after libtraci's of this seed.
+void measureInProcess(std::int64_t seed, const fs::path& folder, LoopRates& rates) {
+  const session::SessionSetup setup(town05(seed, "libsumo"));
+  makeStartLevel(setup);
+  const LoopResult with = runLoop(setup, Results::kBeside, folder);
+  const auto ticks = static_cast<double>(with.census.ticks);
+  rates.in_process.push_back(ticks / with.seconds);
+  rates.gain.push_back(rates.in_process.back() / rates.full.back());
+  double vehicles = 0.0;
+  rates.bare_in_process.push_back(ticks / BareTraffic(setup).run(with.census.ticks, vehicles));
+}
+
 void measureSeed(std::int64_t seed, const fs::path& folder, LoopRates& rates) {
   const session::SessionSetup setup(town05(seed));
-  // cdiff run makes the drivable area while SUMO starts.
-  setup.drivableArea().contains(setup.egoRoute().path().pointAt(0.0).head<2>());
+  makeStartLevel(setup);
   const LoopResult with = runLoop(setup, Results::kBeside, folder);
   const LoopResult in_turn = runLoop(setup, Results::kInTurn, folder);
   const LoopResult without = runLoop(setup, Results::kNone, folder);
@@ -219,6 +251,7 @@ void measureSeed(std::int64_t seed, const fs::path& folder, LoopRates& rates) {
   double bare_vehicles = 0.0;
   rates.bare.push_back(ticks / BareTraffic(setup).run(with.census.ticks, bare_vehicles));
   rates.bare_vehicles.push_back(bare_vehicles);
+  measureInProcess(seed, folder, rates);
   rates.sumo_share.push_back(100.0 * with.stages.at("sumo_step") * ticks / 1e6 / with.seconds);
   rates.share.push_back(100.0 * rates.full.back() / rates.bare.back());
   for (const auto& [stage, microseconds] : with.stages) rates.stages[stage].push_back(microseconds);
@@ -242,6 +275,9 @@ void benchmarkLoop(Figures& figures) {
   figures.push_back({"loop_with_results_in_one_thread", median(rates.one_thread), "ticks/s", ""});
   figures.push_back({"loop_without_results", median(rates.without_results), "ticks/s", ">=1000"});
   figures.push_back({"loop_bare_libtraci", median(rates.bare), "ticks/s", ""});
+  figures.push_back({"loop_with_results_libsumo", median(rates.in_process), "ticks/s", ""});
+  figures.push_back({"loop_libsumo_per_libtraci", median(rates.gain), "times", ""});
+  figures.push_back({"loop_bare_libsumo", median(rates.bare_in_process), "ticks/s", ""});
   figures.push_back({"loop_share_of_bare", median(rates.share), "%", ">=85"});
   figures.push_back({"loop_sumo_share", median(rates.sumo_share), "%", ""});
   if (!node_graph.empty())
