@@ -50,18 +50,12 @@ void cancelAfter(const std::string& name, const core::InputError& error) {
   }
 }
 
-std::string goOnText(const fs::path& results) {
-  const std::string command = "cdiff evaluate --results " + results.string();
+std::string goOnText(const std::string& program, const fs::path& results) {
+  const std::string command = program + " --results " + results.string();
   return "to follow them again: " + command + " --attach\nto end them: " + command + " --cancel\n";
 }
 
-}  // namespace
-
-void requireEngine(const std::string& engine, const evaluation::SlurmOptions& options) {
-  options.validate();
-  if (engine == "slurm") evaluation::requireSlurm();
-}
-
+/// Writes the script of the jobs, prints it and the commands that would submit it.
 void printJobs(const evaluation::Executor& executor, const fs::path& results, int jobs,
                const evaluation::SlurmOptions& options) {
   const evaluation::SlurmBatch batch = batchOf(executor, results, jobs);
@@ -75,10 +69,11 @@ void printJobs(const evaluation::Executor& executor, const fs::path& results, in
   }
 }
 
-void submitJobs(const evaluation::Executor& executor, const fs::path& results, int jobs,
-                const evaluation::SlurmOptions& options) {
+/// Writes the script and submits it, all or nothing. Throws InputError where Slurm refuses.
+void submitJobs(const evaluation::Executor& executor, const fs::path& results,
+                const EngineArguments& arguments, const evaluation::SlurmOptions& options) {
   if (executor.queue().empty()) return;
-  evaluation::SlurmBatch batch = batchOf(executor, results, jobs);
+  evaluation::SlurmBatch batch = batchOf(executor, results, arguments.jobs);
   batch.largest_array = evaluation::requireSlurm();
   writeScript(batch, options);
   evaluation::writeJobName(results, batch.name, {});  // --cancel finds the jobs from the first on
@@ -93,11 +88,14 @@ void submitJobs(const evaluation::Executor& executor, const fs::path& results, i
   }
   evaluation::writeJobName(results, batch.name, ids);
   std::cerr << "submitted " << core::joinText(ids, ", ") << " as " << batch.name << "\n"
-            << goOnText(results);
+            << goOnText(arguments.command, results);
 }
 
+/// Waits for the jobs of a batch whose plan lists these runs; says what goes on, also after a stop
+/// signal. Gives whether no job is left that works on the plan.
 bool followJobs(const std::vector<std::string>& ids, const fs::path& results,
-                const evaluation::SlurmOptions& options, BatchProgress& progress) {
+                const EngineArguments& arguments, const evaluation::SlurmOptions& options,
+                BatchProgress& progress) {
   if (ids.empty()) return true;
   evaluation::SlurmWait wait;
   wait.results = results;
@@ -107,7 +105,7 @@ bool followJobs(const std::vector<std::string>& ids, const fs::path& results,
   wait.unanswered = [] { std::cerr << "Slurm does not answer; waiting for it\n"; };
   const auto open = evaluation::waitForJobs(ids, wait, core::catchStopSignals());
   if (core::stopRequested()) {
-    std::cerr << "the jobs go on without this command\n" << goOnText(results);
+    std::cerr << "the jobs go on without this command\n" << goOnText(arguments.command, results);
     return false;
   }
   if (!open.empty()) {
@@ -116,6 +114,91 @@ bool followJobs(const std::vector<std::string>& ids, const fs::path& results,
               << evaluation::slurmFolder(results).string() << "; go on with --resume\n";
   }
   return true;
+}
+
+/// On another engine than this process.
+std::vector<evaluation::RunRecord> executeElsewhere(const EngineArguments& arguments,
+                                                    const std::vector<evaluation::PlannedRun>& plan,
+                                                    const evaluation::ExecutorOptions& options,
+                                                    bool attach, BatchProgress& progress) {
+  const auto slurm = evaluation::slurmOptionsOf(arguments.slurm);
+  core::catchStopSignals();  // a stop between two arrays would leave jobs that nobody knows
+  evaluation::Executor executor(plan, options);
+  if (attach) {
+    executor.join();
+  } else {
+    executor.announce();
+    if (arguments.prints() && !executor.queue().empty()) {
+      printJobs(executor, options.results, arguments.jobs, slurm);
+      return executor.collect();
+    }
+    if (core::stopRequested()) return executor.collect();
+    submitJobs(executor, options.results, arguments, slurm);
+  }
+  if (followJobs(executor.queue(), options.results, arguments, slurm, progress)) executor.close();
+  return executor.collect();
+}
+
+}  // namespace
+
+void addEngineOptions(CLI::App& command, EngineArguments& arguments) {
+  command.add_option("--jobs", arguments.jobs, "Sessions at a time")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
+  command.add_flag("--fresh", arguments.fresh,
+                   "Start the program for each session, instead of once for each job");
+  command
+      .add_option(
+          "--engine", arguments.engine,
+          "Where the sessions run: local; slurm: in job arrays of a cluster; print: nowhere, "
+          "the plan and the script of the jobs are written and printed")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"local", "slurm", "print"}));
+  command
+      .add_option("--slurm", arguments.slurm,
+                  "What to ask of Slurm: key=value or a YAML file; may be repeated")
+      ->allow_extra_args(false);
+}
+
+void requireEngine(const EngineArguments& arguments) {
+  evaluation::slurmOptionsOf(arguments.slurm);
+  if (arguments.engine == "slurm") evaluation::requireSlurm();
+}
+
+std::vector<evaluation::RunRecord> executeOn(const EngineArguments& arguments,
+                                             const std::vector<evaluation::PlannedRun>& plan,
+                                             evaluation::ExecutorOptions options, bool attach,
+                                             BatchProgress& progress) {
+  if (!arguments.fresh) options.server = {"serve"};
+  options.jobs = arguments.jobs;
+  options.lease.program = arguments.command;
+  options.repeated = [&](const auto& cause, const auto& ids) { progress.repeated(cause, ids); };
+  options.ended = [&](const evaluation::RunRecord& record) { progress.ended(record, false); };
+  options.kept = [&](const evaluation::RunRecord& record) { progress.ended(record, true); };
+  auto records = arguments.isLocal() && !attach
+                     ? evaluation::executeRuns(plan, options, core::catchStopSignals())
+                     : executeElsewhere(arguments, plan, options, attach, progress);
+  progress.finish();
+  return records;
+}
+
+void requireNoWorker(const fs::path& results) {
+  core::LeaseFolder leases(evaluation::leaseFolder(results), {});
+  leases.removeLeftBehind();
+  for (const auto& [id, holder] : leases.holders()) {
+    throw core::InputError(
+        "run '" + id + "' in '" + results.string() + "' is under way by " + holder +
+        "; wait until it has ended, end it (--cancel), or, if that process is gone, "
+        "delete '" +
+        evaluation::leaseFolder(results).string() + "'");
+  }
+}
+
+void cancelEngine(const fs::path& results) {
+  evaluation::requireSlurm();
+  const std::string name = evaluation::readJobName(fs::absolute(results));
+  evaluation::cancelJobs(name);
+  std::cerr << "canceled " << name << "\n";
 }
 
 }  // namespace cdiff::cli

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,22 +13,39 @@
 
 namespace cdiff::cli {
 
-// The engines of `cdiff evaluate` that run a plan elsewhere than in this process.
+// The engines that run the plan of a batch: this process, the jobs of a cluster, or none.
+
+/// Where sessions run, as a command line says it.
+struct EngineArguments {
+  std::string command = "cdiff evaluate";  ///< that goes on with jobs which outlive it
+  std::string engine = "local";            ///< local | slurm | print
+  std::vector<std::string> slurm;          ///< texts of --slurm
+  int jobs = 1;                            ///< sessions at a time; on a cluster in each task
+  bool fresh = false;                      ///< the program starts afresh for each session
+
+  bool isLocal() const { return engine == "local"; }
+  bool prints() const { return engine == "print"; }
+};
+
+/// Adds --jobs, --fresh, --engine and --slurm.
+void addEngineOptions(CLI::App& command, EngineArguments& arguments);
 
 /// Throws InputError where Slurm is missing or does not answer, or the options are wrong.
-void requireEngine(const std::string& engine, const evaluation::SlurmOptions& options);
+void requireEngine(const EngineArguments& arguments);
 
-/// Writes the script of the jobs, prints it and the commands that would submit it.
-void printJobs(const evaluation::Executor& executor, const std::filesystem::path& results, int jobs,
-               const evaluation::SlurmOptions& options);
+/// Runs a plan and gives the record of every planned run, in their order. `options` say what is run
+/// and who is told; program, server and jobs are set by the engine. `attach`: the jobs of the plan
+/// are on the cluster already. The engine `print` writes plan and script, prints the script, and
+/// runs nothing. Throws InputError where Slurm refuses; nothing is queued then.
+std::vector<evaluation::RunRecord> executeOn(const EngineArguments& arguments,
+                                             const std::vector<evaluation::PlannedRun>& plan,
+                                             evaluation::ExecutorOptions options, bool attach,
+                                             BatchProgress& progress);
 
-/// Writes the script and submits it, all or nothing. Throws InputError where Slurm refuses.
-void submitJobs(const evaluation::Executor& executor, const std::filesystem::path& results,
-                int jobs, const evaluation::SlurmOptions& options);
+/// Throws InputError where a worker is at work on a plan that is to be replaced.
+void requireNoWorker(const std::filesystem::path& results);
 
-/// Waits for the jobs of a batch whose plan lists these runs; says what goes on, also after a stop
-/// signal. Gives whether no job is left that works on the plan.
-bool followJobs(const std::vector<std::string>& ids, const std::filesystem::path& results,
-                const evaluation::SlurmOptions& options, BatchProgress& progress);
+/// Ends the jobs of a result folder; what they had under way is returned to the plan.
+void cancelEngine(const std::filesystem::path& results);
 
 }  // namespace cdiff::cli

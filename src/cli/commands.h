@@ -28,6 +28,7 @@ void addTrainCommand(CLI::App& program, int& exit_code);
 void addDoctorCommand(CLI::App& program, int& exit_code);
 void addReportCommand(CLI::App& program, int& exit_code);
 void addRealismCommand(CLI::App& program, int& exit_code);
+void addSearchCommand(CLI::App& program, int& exit_code);
 void addSuiteCommand(CLI::App& program, int& exit_code);
 void addSteeringCommand(CLI::App& program, int& exit_code);
 void addTuneCommand(CLI::App& program, int& exit_code);

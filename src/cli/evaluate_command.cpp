@@ -25,7 +25,6 @@
 #include "evaluation/plan_file.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/separation/ego_ranking.h"
-#include "evaluation/slurm/slurm_queue.h"
 #include "evaluation/suite_selection.h"
 #include "planners/registry.h"
 
@@ -49,13 +48,10 @@ struct EvaluateArguments {
   std::vector<std::string> set;
   std::vector<std::string> only;
   std::string ego;
-  int jobs = 1;
+  EngineArguments engine;
   bool resume = false;
   bool overwrite = false;
   bool strict = false;
-  bool fresh = false;
-  std::string engine = "local";
-  std::vector<std::string> slurm;
   bool attach = false;
   bool cancel = false;
 };
@@ -159,18 +155,6 @@ void removeJobFolder(core::OutputFolder& output) {
   output.remove({kJobFolder});
 }
 
-/// Throws InputError where a worker is at work on a plan that is to be replaced.
-void requireNoWorker(const fs::path& results) {
-  core::LeaseFolder leases(evaluation::leaseFolder(results), {});
-  leases.removeLeftBehind();
-  for (const auto& [id, holder] : leases.holders()) {
-    throw InputError("run '" + id + "' in '" + results.string() + "' is under way by " + holder +
-                     "; wait until it has ended, end it (--cancel), or, if that process is gone, "
-                     "delete '" +
-                     evaluation::leaseFolder(results).string() + "'");
-  }
-}
-
 /// Makes what a batch needs in a folder that is ours, and keeps the matrix in it; on resumption
 /// that of another matrix is refused.
 void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool overwrite) {
@@ -223,27 +207,6 @@ int exitCodeOf(const std::vector<RunRecord>& records,
   return exit_code;
 }
 
-/// On another engine: submits what is to run, or prints it, or follows what runs already.
-std::vector<RunRecord> executeElsewhere(const std::vector<evaluation::PlannedRun>& plan,
-                                        const evaluation::ExecutorOptions& options,
-                                        const EvaluateArguments& arguments,
-                                        BatchProgress& progress) {
-  const auto slurm = evaluation::slurmOptionsOf(arguments.slurm);
-  evaluation::Executor executor(plan, options);
-  if (arguments.attach) {
-    executor.join();
-  } else {
-    executor.announce();
-    if (arguments.engine == "print") {
-      printJobs(executor, options.results, arguments.jobs, slurm);
-      return executor.collect();
-    }
-    submitJobs(executor, options.results, arguments.jobs, slurm);
-  }
-  if (followJobs(executor.queue(), options.results, slurm, progress)) executor.close();
-  return executor.collect();
-}
-
 std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
                                const MatrixOptions& matrix, const fs::path& results,
                                const EvaluateArguments& arguments,
@@ -251,23 +214,14 @@ std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
   const auto isNow = [&](const auto& run) { return evaluation::isChosen(run, chosen); };
   std::vector<evaluation::PlannedRun> now;
   std::copy_if(plan.begin(), plan.end(), std::back_inserter(now), isNow);
-  BatchProgress progress(now, arguments.jobs);
+  BatchProgress progress(now, arguments.engine.jobs);
   evaluation::ExecutorOptions options;
   options.results = results;
-  if (!arguments.fresh) options.server = {"serve"};
-  options.jobs = arguments.jobs;
   options.timeout = matrix.timeout;
   options.retries = static_cast<int>(matrix.retries);
   options.resume = arguments.resume;
   options.chosen = isNow;
-  options.repeated = [&](const auto& cause, const auto& ids) { progress.repeated(cause, ids); };
-  options.ended = [&](const RunRecord& record) { progress.ended(record, false); };
-  options.kept = [&](const RunRecord& record) { progress.ended(record, true); };
-  const bool here = arguments.engine == "local" && !arguments.attach;
-  auto records = here ? evaluation::executeRuns(plan, options, core::catchStopSignals())
-                      : executeElsewhere(plan, options, arguments, progress);
-  progress.finish();
-  return records;
+  return executeOn(arguments.engine, plan, options, arguments.attach, progress);
 }
 
 /// Without the runs whose levels do not fit together, or with --strict refused for them.
@@ -290,15 +244,6 @@ void noteLeftOut(core::OutputFolder& output, const std::vector<std::string>& lef
   output.write(evaluation::kSkippedFile, core::joinText(left_out, "\n") + "\n");
 }
 
-/// The runs under way are returned; --resume goes on with them.
-int cancel(const EvaluateArguments& arguments) {
-  evaluation::requireSlurm();
-  const std::string name = evaluation::readJobName(fs::absolute(arguments.results));
-  evaluation::cancelJobs(name);
-  std::cerr << "canceled " << name << "\n";
-  return ExitCode::kPassed;
-}
-
 /// Writes the batch's files and prints its table; `repeated`: routes that run once.
 void sumUp(const MatrixOptions& matrix, const EvaluateArguments& arguments,
            core::OutputFolder& output, const std::vector<RunRecord>& records,
@@ -318,8 +263,11 @@ void sumUp(const MatrixOptions& matrix, const EvaluateArguments& arguments,
 }
 
 int evaluate(const EvaluateArguments& arguments) {
-  if (arguments.cancel) return cancel(arguments);
-  requireEngine(arguments.engine, evaluation::slurmOptionsOf(arguments.slurm));
+  if (arguments.cancel) {
+    cancelEngine(arguments.results);
+    return ExitCode::kPassed;
+  }
+  requireEngine(arguments.engine);
   const MatrixOptions matrix = matrixOf(arguments);
   const fs::path results = fs::absolute(arguments.results);
   requireFolder(results, arguments);
@@ -337,7 +285,7 @@ int evaluate(const EvaluateArguments& arguments) {
   std::cerr << evaluation::recordOpening(matrix, results) << repeated;
   noteLeftOut(output, left_out);
   const auto records = execute(plan, matrix, results, arguments, chosen);
-  if (arguments.engine == "print" && !arguments.attach) return ExitCode::kPassed;
+  if (arguments.engine.prints() && !arguments.attach) return ExitCode::kPassed;
   sumUp(matrix, arguments, output, records, repeated);
   return exitCodeOf(records, plan, chosen);
 }
@@ -347,19 +295,8 @@ int evaluate(const EvaluateArguments& arguments) {
 namespace {
 
 /// `replaced` are the options of a batch that is to be run, which --attach and --cancel exclude.
-void addEngineOptions(CLI::App& command, EvaluateArguments& arguments,
-                      const std::vector<CLI::Option*>& replaced) {
-  command
-      .add_option(
-          "--engine", arguments.engine,
-          "Where the sessions run: local; slurm: in job arrays of a cluster; print: nowhere, "
-          "the plan and the script of the jobs are written and printed")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"local", "slurm", "print"}));
-  command
-      .add_option("--slurm", arguments.slurm,
-                  "What to ask of Slurm: key=value or a YAML file; may be repeated")
-      ->allow_extra_args(false);
+void addJobOptions(CLI::App& command, EvaluateArguments& arguments,
+                   const std::vector<CLI::Option*>& replaced) {
   CLI::Option* attach = command.add_flag("--attach", arguments.attach,
                                          "Follow the jobs of a batch on Slurm again and sum it up");
   CLI::Option* cancel = command.add_flag(
@@ -407,14 +344,9 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
   command->add_option("--ego", arguments->ego,
                       "One more ego of the matrix: a planner, also one of a plug-in, with options "
                       "as 'NAME key=value ...'");
-  command->add_option("--jobs", arguments->jobs, "Sessions at a time")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 64));
   command->add_flag("--strict", arguments->strict,
                     "Refuse a matrix with levels that do not fit together, instead of leaving "
                     "their runs out with a note");
-  command->add_flag("--fresh", arguments->fresh,
-                    "Start the program for each session, instead of once for each job");
   command->footer("Planners that can attack (mode safety_critical): " +
                   core::joinText(planners::guidedPlannerNames(), ", "));
   CLI::Option* resume = command->add_flag(
@@ -423,7 +355,8 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
   CLI::Option* overwrite = command->add_flag(
       "--overwrite", arguments->overwrite, "Replace the results of an earlier batch in the folder");
   overwrite->excludes(resume);
-  addEngineOptions(*command, *arguments, {resume, overwrite});
+  addEngineOptions(*command, arguments->engine);
+  addJobOptions(*command, *arguments, {resume, overwrite});
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
 }
 

@@ -62,6 +62,7 @@ void addCommands(CLI::App& program, int& exit_code) {
   addDoctorCommand(program, exit_code);
   addReportCommand(program, exit_code);
   addRealismCommand(program, exit_code);
+  addSearchCommand(program, exit_code);
   addSuiteCommand(program, exit_code);
   addSteeringCommand(program, exit_code);
   addTuneCommand(program, exit_code);

@@ -90,6 +90,8 @@ struct RunContact {
   double other_speed = 0.0;        ///< [m/s]
   std::optional<bool> with_cbv{};  ///< else with background traffic; absent: not recorded
 
+  /// Whether the ego stood when it was struck: slower than 0.1 m/s.
+  bool egoStood() const { return ego_speed < 0.1; }
   /// "CBV bg_1", "background vehicle bg_7".
   std::string partnerText() const;
 };

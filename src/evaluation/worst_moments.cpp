@@ -11,8 +11,6 @@
 namespace cdiff::evaluation {
 namespace {
 
-constexpr double kStandingSpeed = 0.1;  // of an ego that was struck standing [m/s]
-
 /// A moment with what it is ranked by: the smaller tuple is the worse moment.
 struct RankedMoment {
   WorstMoment moment;
@@ -24,7 +22,7 @@ RankedMoment contactMoment(std::size_t run, const RunContact& contact) {
   const std::string fault = contact.ego_at_fault ? " (the ego's fault): " : " (not its fault): ";
   return {{run, contact.seconds,
            "contact of the ego with " + contact.partnerText() + fault + contact.why},
-          {false, contact.ego_speed < kStandingSpeed, !contact.ego_at_fault,
+          {false, contact.egoStood(), !contact.ego_at_fault,
            -std::max(contact.ego_speed, contact.other_speed)}};
 }
 
