@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/worker.h"
+#include "planners/registry.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -15,13 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kCarefulEnd = "_careful";
-constexpr const char* kCarefulPlanner = "careful_driver";
 
 std::string caseId(std::size_t number) {
   constexpr std::size_t kDigits = 4;
   const std::string digits = std::to_string(number + 1);
   return "case_" + std::string(kDigits - std::min(kDigits, digits.size()), '0') + digits;
 }
+
+std::string carefulPlanner() { return planners::plannerTitled("Careful driver"); }
 
 /// "NAME key=value ..." in words.
 std::vector<std::string> egoWords(const std::string& ego) {
@@ -106,7 +108,7 @@ std::vector<PlannedRun> Search::planned(const std::vector<SearchCase>& batch, bo
   for (const SearchCase& one : batch) {
     ids.push_back(one.id + (careful ? kCarefulEnd : ""));
     matrix.variants.push_back(ids.back() + ": " + core::joinText(one.set, " "));
-    if (careful) matrix.variants.back() += std::string(" ego_planner=") + kCarefulPlanner;
+    if (careful) matrix.variants.back() += " ego_planner=" + carefulPlanner();
   }
   std::vector<PlannedRun> runs = planRuns(matrix, request_.options_source);
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i].id = ids[i];

@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""Print what `cdiff search` finds beside random draws of the same budget, as "figure value unit goal".
+
+    scripts/benchmark search [SCENARIO] [--budget N] [--seeds N] [--jobs N] [--mode MODE] [--ego EGO] [--json FILE]
+
+Each seed is searched by both methods. A figure with `difference` is evolution minus random, a mean over the pairs.
+"""
+import argparse
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+METHODS = ("evolution", "random")
+
+
+def search(cdiff, options, method, seed, results):
+    """Number of cases that were found, and the largest score."""
+    command = [cdiff, "search", options.scenario, "--budget", str(options.budget), "--method", method, "--seed", str(seed),
+               "--mode", options.mode, "--results", results, "--jobs", str(options.jobs)]
+    if options.ego:
+        command += ["--ego", options.ego]
+    ended = subprocess.run(command, capture_output=True, text=True)
+    if ended.returncode != 0:
+        sys.exit(f"cdiff search ended with {ended.returncode}: {ended.stderr[-2000:]}")
+    with open(Path(results) / "cases.csv", newline="", encoding="utf-8") as file:
+        cases = list(csv.DictReader(file))
+    return {"found": sum(case["found"] == "yes" for case in cases), "worst_score": max(float(case["score"]) for case in cases)}
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def figures_of(pairs):
+    """Figures by name, of a list of {method: {quantity: value}}."""
+    figures = {}
+    for quantity, unit in (("found", "cases"), ("worst_score", "")):
+        for method in METHODS:
+            figures[f"search_{quantity}_{method}"] = (mean([pair[method][quantity] for pair in pairs]), unit)
+        differences = [pair["evolution"][quantity] - pair["random"][quantity] for pair in pairs]
+        figures[f"search_{quantity}_difference"] = (mean(differences), unit)
+        figures[f"search_{quantity}_higher"] = (sum(value > 0 for value in differences), "seeds")
+        figures[f"search_{quantity}_lower"] = (sum(value < 0 for value in differences), "seeds")
+    return figures
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/benchmark search")
+    parser.add_argument("scenario", nargs="?", default="t_junction_straight", help="shipped name or file")
+    parser.add_argument("--budget", type=int, default=40, help="cases of a search")
+    parser.add_argument("--seeds", type=int, default=5, help="pairs of searches")
+    parser.add_argument("--jobs", type=int, default=2, help="sessions at a time")
+    parser.add_argument("--mode", default="safety_critical", help="mode of the CBVs")
+    parser.add_argument("--ego", default="", help="as cdiff search takes it; the scenario's without")
+    parser.add_argument("--json", help="also write the figures to this file")
+    options = parser.parse_args()
+    cdiff = str(Path(os.environ.get("BUILD", "build")) / "devel/lib/e2e_cdiff/cdiff")
+    pairs = []
+    for seed in range(1, options.seeds + 1):
+        with tempfile.TemporaryDirectory() as scratch:
+            pairs.append({method: search(cdiff, options, method, seed, str(Path(scratch) / method)) for method in METHODS})
+        print(f"seed {seed}: {pairs[-1]}", file=sys.stderr, flush=True)
+    figures = figures_of(pairs)
+    for name, (value, unit) in figures.items():
+        print(f"{name} {value:.2f} {unit or '-'} -")
+    if options.json:
+        rows = [{"figure": name, "value": value, "unit": unit, "goal": ""} for name, (value, unit) in figures.items()]
+        Path(options.json).write_text(json.dumps(rows, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
