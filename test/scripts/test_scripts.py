@@ -86,6 +86,49 @@ class Scripts(unittest.TestCase):
             code, error = refused(change)
             self.assertEqual((code, named in error), (3, True), error)
 
+    def test_openscenario_files_are_counted_by_what_becomes_of_them(self):
+        scenario = '<OpenSCENARIO><RoadNetwork><LogicFile filepath="Town09_Opt"/></RoadNetwork><Storyboard/></OpenSCENARIO>'
+        # A stand-in for cdiff that does what the file's name says. "partly" ends only without what is not supported.
+        program = """#!/bin/bash
+name=$(basename "$2" .xosc)
+while [ $# -gt 0 ]; do
+  case $1 in --results) results=$2 ;; --network) network=$2 ;; --ignore-unsupported) ignore=yes ;; esac
+  shift
+done
+[ "$(basename "$network")" = Town09.net.xml ] || { echo "cdiff: no network" >&2; exit 3; }
+fault='/x/y.xosc:3: <TrailerAction>: this action is not supported'
+mkdir -p "$results"
+echo '{"status": "completed", "ego": {"collisions": 1}, "faults": ["'"$fault"' and was ignored"]}' >"$results/summary.json"
+case $name in
+  good) exit 1 ;;
+  partly) [ "${ignore:-}" ] && exit 0; echo "cdiff: $fault; --ignore-unsupported goes on without it" >&2; exit 3 ;;
+  slow) exec sleep 60 ;;
+  *) echo "cdiff: /x/y.xosc:7: the attribute 's' is missing" >&2; exit 3 ;;
+esac
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "cdiff").write_text(program)
+            (root / "cdiff").chmod(0o755)
+            (root / "Town09.net.xml").touch()
+            (root / "set/catalogs").mkdir(parents=True)
+            (root / "set/catalogs/cars.xosc").write_text("<OpenSCENARIO><Catalog/></OpenSCENARIO>")
+            for name in ("good", "partly", "slow", "bad"):
+                (root / f"set/{name}.xosc").write_text(scenario)
+
+            def covered(*arguments):
+                return subprocess.run([SOURCE / "scripts/openscenario_coverage", "--cdiff", root / "cdiff", *arguments], timeout=60,
+                                      capture_output=True, text=True, check=False)
+
+            done = covered(root / "set", "--networks", root, "--limit", "1", "--files")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("| set | 4 | 1 | 1 | 1 | 1 |", done.stdout)
+            for line in ("1 x <TrailerAction>: this action is not supported", "1 x the attribute 's' is missing", "1 x no end within 1 s"):
+                self.assertIn(line, done.stdout.splitlines())
+            self.assertIn("completed, 1 collisions of the ego", done.stdout)
+            self.assertIn("| set | 4 | 0 | 0 | 0 | 4 |", covered(root / "set").stdout)
+            self.assertEqual(covered(root / "set/catalogs").returncode, 3)
+
     def test_benchmark_builds_itself_only(self):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
         self.assertEqual(targets_of(calls_of("benchmark", "--json", "x", "map")), [["cdiff_benchmark"]])
