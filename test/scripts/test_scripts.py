@@ -176,6 +176,37 @@ esac
             self.assertNotIn(package, sessions)
             self.assertIn(package, build)
 
+    def test_containers_name_scripts_and_paths_that_exist(self):
+        dockerfile = (SOURCE / "Dockerfile").read_text(encoding="utf-8")
+        container = json.loads((SOURCE / ".devcontainer/devcontainer.json").read_text(encoding="utf-8"))
+        bases = re.findall(r"^FROM (\S+)", dockerfile, re.MULTILINE)
+        self.assertEqual({container["image"], *bases}, {"debian:12"})
+        scripts = re.findall(r"^RUN (scripts/\S+)$", dockerfile, re.MULTILINE)
+        self.assertEqual(scripts, ["scripts/package"])
+        for script in [*scripts, container["onCreateCommand"]]:
+            self.assertTrue(os.access(SOURCE / script, os.X_OK), script)
+        # The first stage leaves the package where scripts/package puts it; the second one installs that file.
+        folder = re.search(r"^COPY --from=build /e2e_cdiff/(\S+)/ /packages/$", dockerfile, re.MULTILINE).group(1)
+        build, sub = folder.split("/")
+        package = (SOURCE / "scripts/package").read_text(encoding="utf-8")
+        self.assertIn(f"BUILD=${{BUILD:-{build}}}", package)
+        name = re.search(rf'"\$BUILD"/{sub}/(\S+\.deb)', package).group(1)
+        self.assertIn(f"/packages/{name} ", dockerfile)
+
+    def test_containers_get_what_is_committed(self):
+        ignored = (SOURCE / ".dockerignore").read_text(encoding="utf-8").split()
+        self.assertIn("build", ignored)
+        tracked = subprocess.run(["git", "-C", SOURCE, "ls-files"], capture_output=True, text=True, check=False).stdout.splitlines()
+        self.assertEqual({path for path in tracked if path.split("/")[0] in ignored}, set())
+
+    def test_packages_that_setup_installs_are_packages(self):
+        names = [name for file in sorted((SOURCE / "scripts").glob("packages*.txt")) for line in file.read_text(encoding="utf-8").splitlines()
+                 if not line.startswith("#") for name in line.split()]
+        known = subprocess.run(["apt-cache", "madison", *names], capture_output=True, text=True, check=False).stdout
+        if not known:
+            self.skipTest("apt has no lists here")
+        self.assertEqual(set(names) - {line.split("|")[0].strip() for line in known.splitlines()}, set())
+
     def test_the_package_is_built_for_sessions_below_opt(self):
         calls = calls_of("package")
         self.assertIn("-DCMAKE_INSTALL_PREFIX=/opt/e2e_cdiff", calls[0])
