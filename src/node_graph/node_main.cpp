@@ -20,6 +20,7 @@
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/messages/topics.h"
 #include "node_graph/nodes/camera_node.h"
+#include "node_graph/nodes/carla_session_node.h"
 #include "node_graph/nodes/cbv_identification_node.h"
 #include "node_graph/nodes/metrics_node.h"
 #include "node_graph/nodes/planner_node.h"
@@ -193,6 +194,10 @@ int runMetricsNode(int argc, char** argv) {
 
 int runRecorderNode(int argc, char** argv) {
   return runNode<RecorderNode>(argc, argv, kRecorderNode);
+}
+
+int runCarlaSessionNode(int argc, char** argv) {
+  return runNode(argc, argv, kCarlaSessionNode, runCarlaSession);
 }
 
 int runSceneNode(int argc, char** argv) { return runNode<SceneNode>(argc, argv, kSceneNode); }

@@ -29,6 +29,8 @@ int runMetricsNode(int argc, char** argv);
 int runRecorderNode(int argc, char** argv);
 /// Replays a recorded session under the traffic simulator's name, to which the other nodes listen.
 int runReplayNode(int argc, char** argv);
+/// Runs a session that CARLA simulates.
+int runCarlaSessionNode(int argc, char** argv);
 /// Makes markers of what rosbag play publishes.
 int runSceneNode(int argc, char** argv);
 
