@@ -18,7 +18,7 @@ BUDGETS = {"README.md": 950, "CONTRIBUTING.md": 1300, "docs/README.md": 350,
            # tutorials
            "docs/first_session.md": 700, "docs/test_your_ego.md": 700, "docs/your_own_scenario.md": 900, "docs/your_own_objective.md": 500,
            # how-to
-           "docs/evaluation.md": 700, "docs/scaling.md": 400, "docs/search.md": 350, "docs/training.md": 1000, "docs/plugins.md": 450, "docs/replay.md": 450, "docs/export.md": 400, "docs/openscenario.md": 400, "docs/install.md": 400, "docs/steering.md": 450, "docs/watch.md": 300, "docs/rviz.md": 450, "docs/what_if.md": 450, "docs/suites.md": 500,
+           "docs/evaluation.md": 700, "docs/scaling.md": 400, "docs/search.md": 350, "docs/training.md": 1000, "docs/plugins.md": 450, "docs/replay.md": 450, "docs/export.md": 400, "docs/openscenario.md": 400, "docs/install.md": 400, "docs/steering.md": 450, "docs/watch.md": 300, "docs/rviz.md": 450, "docs/carla.md": 300, "docs/what_if.md": 450, "docs/suites.md": 500,
            "docs/sealed_suites.md": 700, "docs/sealed_suites_log.md": 650, "docs/troubleshooting.md": 700,
            # explanation
            "docs/architecture.md": 900, "docs/diffusion_planner.md": 900, "docs/guidance.md": 1000, "docs/cbv_identification.md": 450,
