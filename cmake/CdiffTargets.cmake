@@ -99,6 +99,13 @@ function(cdiff_nightly)
   endforeach()
 endfunction()
 
+# cdiff_first_try(TEST...): tests of this folder that `scripts/test` does not run once more where they fail: same bytes, lost data, access.
+function(cdiff_first_try)
+  foreach(test ${ARGN})
+    set_property(TEST ${test} APPEND PROPERTY LABELS first_try)
+  endforeach()
+endfunction()
+
 # cdiff_gtest(NAME SOURCES file... LINK target... [TIMEOUT s] [NIGHTLY] [NIGHTLY_CASES pattern]): one gtest program; results
 # where catkin looks for them. NIGHTLY: only `scripts/test --nightly` builds and runs it. NIGHTLY_CASES: it runs the cases of this
 # gtest filter, as NAME_nightly, and `scripts/test` all others.

@@ -53,6 +53,13 @@ def build(folder):
     return names
 
 
+def foreign_libraries(program, folder, environment):
+    """Libraries of ours that the program would load from another build, where they have no sanitizer; one line each."""
+    shown = subprocess.run(["ldd", program], env=environment, check=True, capture_output=True, text=True).stdout
+    ours = [line.split("=>")[1].split()[0] for line in shown.splitlines() if "libe2e_cdiff_" in line and "=>" in line]
+    return "".join(f"{library} is not of this build\n" for library in ours if not library.startswith(str(folder)))
+
+
 def run(program, folder):
     """None when the program passes, else the end of what it wrote."""
     environment = {**environment_of(folder, SOURCE), **OPTIONS}
@@ -61,6 +68,9 @@ def run(program, folder):
     suppressions.write_text(SUPPRESSIONS)
     environment["TSAN_OPTIONS"] += f":suppressions={suppressions}"
     environment.setdefault("E2E_CDIFF_DATA", str(SOURCE / ".." / "shared" / "data"))
+    foreign = foreign_libraries(program, folder, environment)
+    if foreign:
+        return foreign
     # Limits of wall-clock time are for programs at full speed.
     arguments = [program, "--gtest_filter=-*WithinASecond:*Memory*:*AfterTheStepTimeout"]
     try:

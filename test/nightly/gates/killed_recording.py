@@ -1,0 +1,44 @@
+"""A session that records is killed at some moment; its bag gives all that it holds."""
+import os
+import re
+import signal
+import time
+
+from gate import Gate
+from programs import CDIFF, Folder, Program, misbehavior, run_cdiff, ticks
+
+SESSION = ["run", "roundabout_entry", "--cbv-planner", "pdm_lite", "--quiet", "--record", "--set", "at_most=20", "--set", "target_speed=1", "--set",
+           "protocol.time_limit=400"]
+CHUNK = 768 * 1024  # [byte]
+
+
+def bag_of(results):
+    """The bag, under its own name or that of one which is not closed."""
+    return next(path for path in sorted(results.iterdir()) if re.search(r"\.bag(\.|$)", path.name))
+
+
+def kill_and_replay(delay):
+    with Folder() as folder:
+        results = folder / "r"
+        program = Program([CDIFF, *SESSION, "--results", results], folder)
+        while not (results.is_dir() and any(".bag" in path.name and path.stat().st_size > CHUNK for path in results.iterdir())):
+            if program.process.poll() is not None:
+                return f"ended by itself: {program.text()[-300:]}"
+            time.sleep(0.02)
+        time.sleep(delay)
+        for process in program.living():
+            os.kill(process, signal.SIGKILL)
+        program.end(10)
+        if (results / "summary.json").exists():
+            return "a summary under its final name"
+        replay, code = run_cdiff(["replay", bag_of(results), "--results", folder / "again", "--quiet"], folder)
+        return misbehavior(replay, code, {0, 1, 2}) or (None if ticks(folder / "again") > 100 else "ticks are missing")
+
+
+def trials(random, count):
+    for _ in range(count):
+        delay = random.uniform(0.0, 2.0)
+        yield f"{delay:.2f} s behind the first chunk", lambda delay=delay: kill_and_replay(delay)
+
+
+GATE = Gate("killed_recording", "kill -9 while recording: no half result under a final name, the bag replays", 100, trials)

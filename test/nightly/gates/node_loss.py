@@ -1,0 +1,43 @@
+"""A node of a session is killed or stopped at some moment."""
+import os
+import signal
+import time
+
+from gate import Gate
+from programs import ROOT, Folder, Program, faults, half_files, misbehavior, run_cdiff, summary
+
+LIMIT = 45.0  # [s]
+NODES = ["traffic_simulator_node", "cbv_identification_node", "ego_planner_node", "cbv_planner_node", "metrics_node", "recorder_node"]
+SESSION = ["scenario:=roundabout_entry", "cbv_planner:=pdm_lite", "record:=true", "set:=at_most=2 target_speed=1"]
+
+
+def what_is_wrong(folder, node):
+    """What result and bag of a session that lost `node` do not say."""
+    results = folder / "r"
+    if summary(results)["status"] != "error":
+        return f"status {summary(results)['status']}"
+    if node not in faults(results):
+        return f"{node} is not named: {faults(results)}"
+    if half_files(results):
+        return f"half files: {half_files(results)}"
+    program, code = run_cdiff(["replay", results / "session.bag", "--results", folder / "again", "--quiet"], folder)
+    return misbehavior(program, code, {0, 1, 2})
+
+
+def lose(node, sign, delay):
+    with Folder() as folder:
+        program = Program([ROOT / "scripts" / "session", *SESSION, f"results:={folder / 'r'}"], folder)
+        process = program.find(node)
+        time.sleep(delay)
+        os.kill(process, sign)
+        return misbehavior(program, program.end(LIMIT), {2}) or what_is_wrong(folder, node)
+
+
+def trials(random, count):
+    for index in range(count):
+        node, sign = NODES[index // 2 % len(NODES)], (signal.SIGKILL, signal.SIGSTOP)[index % 2]
+        delay = random.uniform(1.0, 8.0)
+        yield f"{node} {sign.name} after {delay:.2f} s", lambda n=node, s=sign, d=delay: lose(n, s, d)
+
+
+GATE = Gate("node_loss", "a node killed or stopped: exit code 2 within 45 s, the node named, its bag replays, no process left", 240, trials)
