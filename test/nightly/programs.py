@@ -163,6 +163,11 @@ def half_files(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if ".tmp" in path.name or path.suffix in {".active", ".part"})
 
 
+def bag_of(results):
+    """The bag of a session, under its own name or that of one whose recorder was killed."""
+    return next(path for path in (results / "session.bag", results / "session.bag.active") if path.exists())
+
+
 def summary(results):
     return json.loads((results / "summary.json").read_text())
 

@@ -1,20 +1,14 @@
 """A session that records is killed at some moment; its bag gives all that it holds."""
 import os
-import re
 import signal
 import time
 
 from gate import Gate
-from programs import CDIFF, Folder, Program, misbehavior, run_cdiff, ticks
+from programs import CDIFF, Folder, Program, bag_of, misbehavior, run_cdiff, ticks
 
 SESSION = ["run", "roundabout_entry", "--cbv-planner", "pdm_lite", "--quiet", "--record", "--set", "at_most=20", "--set", "target_speed=1", "--set",
            "protocol.time_limit=400"]
 CHUNK = 768 * 1024  # [byte]
-
-
-def bag_of(results):
-    """The bag, under its own name or that of one which is not closed."""
-    return next(path for path in sorted(results.iterdir()) if re.search(r"\.bag(\.|$)", path.name))
 
 
 def kill_and_replay(delay):
