@@ -80,7 +80,7 @@ class Program:
                 pass
         return found
 
-    def find(self, name, limit=20.0):
+    def find(self, name, limit=60.0):
         """Id of the process whose program or ROS name is `name`, once there is one."""
         end = time.monotonic() + limit
         while time.monotonic() < end:
