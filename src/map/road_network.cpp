@@ -14,21 +14,6 @@ namespace {
 
 using Index = std::size_t;
 
-/// Squared distance in the plane to a segment of a lane, and the elevation of its nearest point.
-struct SegmentDistance {
-  double squared = 0.0;
-  double elevation = 0.0;
-};
-
-SegmentDistance distanceToSegment(const Lane& lane, int segment, const Eigen::Vector2d& position) {
-  const Eigen::Vector3d& start = lane.centerline.points()[static_cast<Index>(segment)];
-  const Eigen::Vector3d& end = lane.centerline.points()[static_cast<Index>(segment) + 1];
-  const Eigen::Vector2d along = (end - start).head<2>();
-  const Eigen::Vector2d offset = position - start.head<2>();
-  const double fraction = std::clamp(along.dot(offset) / along.squaredNorm(), 0.0, 1.0);
-  return {(offset - fraction * along).squaredNorm(), start.z() + fraction * (end.z() - start.z())};
-}
-
 /// Nearest first, ties by lane index.
 bool nearer(const LaneMatch& left, const LaneMatch& right) {
   if (left.projection.distance != right.projection.distance) {
@@ -38,6 +23,19 @@ bool nearer(const LaneMatch& left, const LaneMatch& right) {
 }
 
 }  // namespace
+
+RoadNetwork::SpatialIndex::Entry::Entry(const std::vector<Lane>& lanes, LaneIndex of_lane,
+                                        int of_segment)
+    : lane(of_lane), segment(of_segment) {
+  const auto& points = lanes[static_cast<Index>(lane)].centerline.points();
+  const Eigen::Vector3d& from = points[static_cast<Index>(segment)];
+  const Eigen::Vector3d& to = points[static_cast<Index>(segment) + 1];
+  start = from.head<2>();
+  along = (to - from).head<2>();
+  squared_length = along.squaredNorm();
+  elevation = from.z();
+  rise = to.z() - from.z();
+}
 
 RoadNetwork::SpatialIndex::SpatialIndex(const std::vector<Lane>& lanes) {
   setBounds(lanes);
@@ -51,7 +49,7 @@ RoadNetwork::SpatialIndex::SpatialIndex(const std::vector<Lane>& lanes) {
   std::vector<Index> next(cell_begin_.begin(), cell_begin_.end() - 1);
   for (Index i = 0; i < lanes.size(); ++i) {
     visitCells(lanes[i], [&](Index cell, int segment) {
-      entries_[next[cell]++] = {static_cast<LaneIndex>(i), segment};
+      entries_[next[cell]++] = Entry(lanes, static_cast<LaneIndex>(i), segment);
     });
   }
 }
@@ -110,8 +108,26 @@ void RoadNetwork::SpatialIndex::visitCells(const Lane& lane, Visit&& visit) cons
   }
 }
 
+/// By lane, each lane's nearest first.
+bool RoadNetwork::SpatialIndex::before(const Hit& left, const Hit& right) {
+  if (left.lane != right.lane) return left.lane < right.lane;
+  if (left.squared_distance != right.squared_distance) {
+    return left.squared_distance < right.squared_distance;
+  }
+  return left.segment < right.segment;
+}
+
+/// The segments of a lane mostly come one after the other: only the nearest of them stays.
+void RoadNetwork::SpatialIndex::keepNearest(const Hit& hit, std::vector<Hit>& hits) {
+  if (hits.empty() || hits.back().lane != hit.lane) {
+    hits.push_back(hit);
+  } else if (before(hit, hits.back())) {
+    hits.back() = hit;
+  }
+}
+
 std::vector<RoadNetwork::SpatialIndex::Hit> RoadNetwork::SpatialIndex::find(
-    const std::vector<Lane>& lanes, const Query& query) const {
+    const Query& query) const {
   std::vector<Hit> hits;
   if (!query.position.allFinite() || !(query.radius >= 0.0)) return hits;
   const double limit = query.radius * query.radius;
@@ -123,20 +139,16 @@ std::vector<RoadNetwork::SpatialIndex::Hit> RoadNetwork::SpatialIndex::find(
     const Index end = cell_begin_[row_begin + static_cast<Index>(last_column) + 1];
     for (Index i = cell_begin_[row_begin + static_cast<Index>(first_column)]; i < end; ++i) {
       const Entry& entry = entries_[i];
-      const Lane& lane = lanes[static_cast<Index>(entry.lane)];
-      const SegmentDistance distance = distanceToSegment(lane, entry.segment, query.position);
-      if (distance.squared > limit) continue;
-      if (std::abs(distance.elevation - query.elevation) > query.level_height) continue;
-      hits.push_back({entry.lane, entry.segment, distance.squared});
+      const Eigen::Vector2d offset = query.position - entry.start;
+      const double fraction = std::clamp(entry.along.dot(offset) / entry.squared_length, 0.0, 1.0);
+      const double squared = (offset - fraction * entry.along).squaredNorm();
+      if (squared > limit) continue;
+      const double elevation = entry.elevation + fraction * entry.rise;
+      if (std::abs(elevation - query.elevation) > query.level_height) continue;
+      keepNearest({entry.lane, entry.segment, squared}, hits);
     }
   }
-  std::sort(hits.begin(), hits.end(), [](const Hit& left, const Hit& right) {
-    if (left.lane != right.lane) return left.lane < right.lane;
-    if (left.squared_distance != right.squared_distance) {
-      return left.squared_distance < right.squared_distance;
-    }
-    return left.segment < right.segment;
-  });
+  std::sort(hits.begin(), hits.end(), before);
   const auto same_lane = [](const Hit& left, const Hit& right) { return left.lane == right.lane; };
   hits.erase(std::unique(hits.begin(), hits.end(), same_lane), hits.end());
   return hits;
@@ -174,7 +186,7 @@ std::vector<LaneMatch> RoadNetwork::lanesNear(const Eigen::Vector2d& position, d
   query.elevation = elevation;
   query.level_height = level_height;
   std::vector<LaneMatch> matches;
-  for (const SpatialIndex::Hit& hit : index_->find(lanes_, query)) {
+  for (const SpatialIndex::Hit& hit : index_->find(query)) {
     const geometry::Polyline& line = lane(hit.lane).centerline;
     const auto segment = static_cast<std::size_t>(hit.segment);
     LaneMatch match;

@@ -28,13 +28,24 @@ struct RoadNetwork::SpatialIndex {
 
   explicit SpatialIndex(const std::vector<Lane>& lanes);
   /// One hit for each lane that fits, by lane index.
-  std::vector<Hit> find(const std::vector<Lane>& lanes, const Query& query) const;
+  std::vector<Hit> find(const Query& query) const;
 
  private:
+  /// A segment with all that its distance needs, so that a query reads the entries alone.
   struct Entry {
+    Entry() = default;
+    Entry(const std::vector<Lane>& lanes, LaneIndex of_lane, int of_segment);
+
     LaneIndex lane = kNoLane;
     int segment = 0;
+    Eigen::Vector2d start = Eigen::Vector2d::Zero();  ///< [m]
+    Eigen::Vector2d along = Eigen::Vector2d::Zero();  ///< to its end [m]
+    double squared_length = 0.0;                      ///< in the plane [m^2]
+    double elevation = 0.0;                           ///< of its start [m]
+    double rise = 0.0;                                ///< from there to its end [m]
   };
+  static bool before(const Hit& left, const Hit& right);
+  static void keepNearest(const Hit& hit, std::vector<Hit>& hits);
   int columnOf(double x) const;
   int rowOf(double y) const;
   void setBounds(const std::vector<Lane>& lanes);
