@@ -16,6 +16,7 @@ namespace cdiff::record {
 namespace {
 
 constexpr int kJpegQuality = 72;
+constexpr int kPngEffort = 6;  // of 9, which takes three times as long for 5 % fewer bytes
 
 std::vector<std::uint8_t> encoded(const traffic::CameraImage& image, const char* format,
                                   const std::vector<int>& settings) {
@@ -52,7 +53,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 
 std::string pngDataUri(const traffic::CameraImage& image) {
   return "data:image/png;base64," +
-         base64(encoded(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 9}));
+         base64(encoded(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, kPngEffort}));
 }
 
 std::vector<std::uint8_t> jpegOf(const traffic::CameraImage& image) {
