@@ -32,16 +32,33 @@ bool plausible(const msgs::Vehicle& vehicle) {
          size(vehicle.length) && size(vehicle.width) && size(vehicle.height);
 }
 
+/// What is wrong with a vehicle by itself; empty where nothing is.
+std::string faultOf(const msgs::Vehicle& vehicle) {
+  if (vehicle.role > msgs::Vehicle::BACKGROUND)
+    return "has the unknown role " + std::to_string(vehicle.role);
+  if (!plausible(vehicle)) return "has a state or size that no vehicle can have";
+  if (core::plainText(vehicle.id) != vehicle.id) return "has an id that is no plain text";
+  return "";
+}
+
+std::string named(std::string_view id) {
+  return "vehicle '" + core::fileName(std::string(id)) + "' ";
+}
+
+/// Every node looks at all vehicles of every tick: nothing is put into words that is right.
 std::string wrongVehicles(const std::vector<msgs::Vehicle>& vehicles) {
-  std::set<std::string_view> ids;
+  std::vector<std::string_view> ids;
+  ids.reserve(vehicles.size());
+  for (const msgs::Vehicle& vehicle : vehicles) {
+    if (const std::string fault = faultOf(vehicle); !fault.empty())
+      return named(vehicle.id) + fault;
+    ids.push_back(vehicle.id);
+  }
+  std::sort(ids.begin(), ids.end());
+  const auto twice = std::adjacent_find(ids.begin(), ids.end());
+  if (twice != ids.end()) return named(*twice) + "is there twice";
   const msgs::Vehicle* ego = nullptr;
   for (const msgs::Vehicle& vehicle : vehicles) {
-    const std::string name = "vehicle '" + core::fileName(vehicle.id) + "'";
-    if (vehicle.role > msgs::Vehicle::BACKGROUND)
-      return name + " has the unknown role " + std::to_string(vehicle.role);
-    if (!plausible(vehicle)) return name + " has a state or size that no vehicle can have";
-    if (core::plainText(vehicle.id) != vehicle.id) return name + " has an id that is no plain text";
-    if (!ids.insert(vehicle.id).second) return name + " is there twice";
     if (vehicle.role != msgs::Vehicle::EGO) continue;
     if (ego != nullptr) return "it has two egos, '" + ego->id + "' and '" + vehicle.id + "'";
     ego = &vehicle;
