@@ -105,6 +105,7 @@ class VerdictRules {
     if (!rules_.judge) return {};
     addStatus();
     addCompletion();
+    addDistance();
     addContacts();
     addScore();
     addCollisions();
@@ -138,6 +139,15 @@ class VerdictRules {
                              "the ego completed " + core::formatFixed(percent, 1) +
                                  " % of its route; at least " + core::formatNumber(least) +
                                  " % is asked"));
+  }
+
+  void addDistance() {
+    const double least = rules_.minimum_ego_distance;
+    if (least <= 0.0) return;
+    const double meters = measures_.number(known::kEgoDistance);
+    checks_.push_back(judged("ego_distance", meters >= least,
+                             "the ego drove " + core::formatFixed(meters, 1) + " m; at least " +
+                                 core::formatNumber(least) + " m is asked"));
   }
 
   void addContacts() {

@@ -114,6 +114,8 @@ void VerdictOptions::describe(core::OptionsVisitor& visitor) {
                contact_without_fault, {"allowed", "struck", "failed", "by_mode"});
   visitor.number({"minimum_driving_score", "%", "Least driving score of the ego."},
                  minimum_driving_score, 0.0, 100.0);
+  visitor.number({"minimum_ego_distance", "m", "Least distance that the ego drives."},
+                 minimum_ego_distance, 0.0, kInfinite);
   visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego, whosever fault."},
                  maximum_ego_collisions, 0.0, kInfinite);
   visitor.number({"maximum_red_lights", "", "Most red lights that the ego runs."},

@@ -34,6 +34,7 @@ struct VerdictOptions {
       "allowed";  ///< allowed | struck | failed | by_mode: failed where CBVs drive naturalistically
                   ///< and struck where they attack
   double minimum_driving_score = 0.0;   ///< least driving score of the ego, by the protocol [%]
+  double minimum_ego_distance = 0.0;    ///< least distance that the ego drives [m]
   double maximum_ego_collisions = 1e9;  ///< contacts
   double maximum_red_lights = 1e9;      ///< run by the ego
   double maximum_stop_signs = 1e9;      ///< not obeyed by the ego

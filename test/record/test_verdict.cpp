@@ -21,6 +21,7 @@ metrics::SessionMeasures someMeasures() {
   measures.set(known::kRouteCompletion, {80.0, 1, "", ""});
   measures.protocol = "bench2drive";
   measures.set(known::kDrivingScore, {33.6, 1, "", ""});
+  measures.set(known::kEgoDistance, {250.0, 400, "m", ""});
   measures.set(known::kEgoCollisions, {1.0, 1, "", ""});
   measures.set(known::kRedLights, {1.0, 3, "", ""});
   measures.set(known::kStopSigns, {2.0, 2, "", ""});
@@ -97,6 +98,7 @@ TEST(Verdict, LimitsCountAsMetAtTheLimit) {
   session::VerdictOptions rules;
   rules.minimum_route_completion = 80.0;
   rules.minimum_driving_score = 33.6;
+  rules.minimum_ego_distance = 250.0;
   rules.maximum_contacts_at_fault = 1.0;
   rules.maximum_ego_collisions = 1.0;
   rules.maximum_red_lights = 1.0;
@@ -106,13 +108,14 @@ TEST(Verdict, LimitsCountAsMetAtTheLimit) {
   rules.statuses = {"completed", "blocked"};
   const Verdict verdict = judged(rules, SessionStatus::kBlocked);
   EXPECT_EQ(verdict.outcome, Outcome::kPassed);
-  EXPECT_EQ(verdict.checks.size(), 10u);  // the session and nine rules
+  EXPECT_EQ(verdict.checks.size(), 11u);  // the session and ten rules
   EXPECT_TRUE(verdict.reasons.empty());
 }
 
 TEST(Verdict, NamesEveryRuleThatIsNotMet) {
   session::VerdictOptions rules;
   rules.minimum_route_completion = 90.0;
+  rules.minimum_ego_distance = 300.0;
   rules.minimum_driving_score = 50.0;
   rules.maximum_contacts_at_fault = 0.0;
   rules.maximum_ego_collisions = 0.0;
@@ -128,6 +131,7 @@ TEST(Verdict, NamesEveryRuleThatIsNotMet) {
       std::vector<std::string>(
           {"the session ended with status 'timed_out'; allowed: completed",
            "the ego completed 80.0 % of its route; at least 90 % is asked",
+           "the ego drove 250.0 m; at least 300 m is asked",
            "the ego was at fault in 1 contact; at most 0 allowed: with CBV bg_1 at 5.85 s (it did)",
            "the ego's driving score by bench2drive was 33.6 %; at least 50 % is asked",
            "the ego had 1 collision; at most 0 allowed",
@@ -135,10 +139,11 @@ TEST(Verdict, NamesEveryRuleThatIsNotMet) {
            "stop signs that the ego did not obey: 2; at most 1 allowed",
            "share of its route that the ego drove outside the lanes: 1.25 %; at most 1 % allowed",
            "the CBVs were off the road 5.00 % of their time; at most 4 % allowed"}));
-  EXPECT_EQ(verdict.decided_by,
-            std::vector<std::string>({"status", "route_completion", "contacts_at_fault",
-                                      "driving_score", "ego_collisions", "red_lights", "stop_signs",
-                                      "outside_lanes_percent", "cbv_off_road"}));
+  EXPECT_EQ(
+      verdict.decided_by,
+      std::vector<std::string>({"status", "route_completion", "ego_distance", "contacts_at_fault",
+                                "driving_score", "ego_collisions", "red_lights", "stop_signs",
+                                "outside_lanes_percent", "cbv_off_road"}));
 }
 
 TEST(Verdict, WhatAContactWithoutFaultMeansIsTheScenarios) {
