@@ -12,6 +12,8 @@ namespace cdiff::cbv {
 
 /// CbvOptions::only does not name it.
 inline constexpr const char* kNotNamed = "not_named";
+/// A pedestrian, a bicycle or a small object: no planner of CBVs can drive it.
+inline constexpr const char* kTooSmall = "too_small";
 /// It was a CBV before (life cycle "rift").
 inline constexpr const char* kAlreadyChosen = "already_chosen";
 /// It touches another vehicle and is about to be removed.

@@ -10,6 +10,7 @@
 #include "cbv/conflict_search.h"
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "traffic/vehicle_class.h"
 
 namespace cdiff::cbv {
 namespace {
@@ -298,6 +299,7 @@ double CbvSelector::rankingKey(const Candidate& candidate) const {
 const char* CbvSelector::examine(const traffic::TrafficSnapshot& snapshot,
                                  Candidate& candidate) const {
   const traffic::Vehicle& vehicle = *candidate.vehicle;
+  if (traffic::isSmall(vehicle.dimensions)) return kTooSmall;
   if (never_again_.count(vehicle.id) != 0) return kAlreadyChosen;
   if (inContact(snapshot, vehicle.id)) return kInContact;
   const char* failed = failedNearness(vehicle, *snapshot.ego(), options_);

@@ -31,6 +31,7 @@ std::string textOf(const Texts& texts, const std::string& word) {
 std::string rejectionText(const std::string& reason) {
   static const Texts kTexts = {
       {cbv::kNotNamed, "cbv.only does not name it"},
+      {cbv::kTooSmall, "it is a pedestrian, a bicycle or a small object"},
       {cbv::kAlreadyChosen, "it was a CBV before, and the life cycle takes none twice"},
       {cbv::kInContact, "it touches another vehicle and is about to be removed"},
       {cbv::kTooFar, "it is farther from the ego than cbv.search_radius"},

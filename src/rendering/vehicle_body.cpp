@@ -17,6 +17,8 @@ constexpr Color kShadow = rgb(44, 46, 50);
 constexpr Color kTailLight = rgb(128, 14, 16);
 constexpr Color kBrakeLight = rgb(255, 36, 24);
 constexpr Color kHeadlight = rgb(255, 250, 214);
+constexpr Color kTrousers = rgb(40, 46, 66);
+constexpr Color kSkin = rgb(214, 168, 140);
 constexpr Color kPalette[] = {rgb(206, 208, 212), rgb(60, 104, 170), rgb(150, 154, 160),
                               rgb(172, 140, 90),  rgb(52, 128, 110), rgb(226, 226, 222),
                               rgb(108, 84, 130),  rgb(70, 78, 92)};
@@ -221,6 +223,43 @@ void paintTall(const traffic::VehicleDimensions& size, Color color, Painter& pai
   painter.face(frontOf(screen), kGlass, rank::kBodyDetail);
 }
 
+/// A person, or a plain block where the box is low.
+void paintUpright(const traffic::VehicleDimensions& size, Color color, Painter& painter) {
+  constexpr double kLeast = 1.0;  // height of a person [m]
+  const double front = 0.5 * size.length;
+  const double half = 0.5 * size.width;
+  const auto block = [&](double share, double low, double high) {
+    return Block{-share * front, -share * front, share * front, share * front,
+                 share * half,   share * half,   low,           high};
+  };
+  if (size.height < kLeast)
+    return paintBlock(block(1.0, 0.0, size.height), color, color, rank::kBody, painter);
+  const double belt = 0.5 * size.height;
+  const double neck = 0.85 * size.height;
+  paintBlock(block(0.8, 0.0, belt), kTrousers, kTrousers, rank::kBody, painter);
+  paintBlock(block(1.0, belt, neck), color, color, rank::kBody, painter);
+  paintBlock(block(0.5, neck, size.height), kSkin, kSkin, rank::kBody, painter);
+}
+
+/// Wheels, body and lights.
+void paintVehicle(const traffic::Vehicle& vehicle, Color color, Painter& painter) {
+  const traffic::VehicleDimensions& size = vehicle.dimensions;
+  paintWheels(size, painter);
+  const bool car = traffic::classOf(size) == traffic::VehicleClass::kCar;  // with a cabin
+  if (car) {
+    paintCar(size, color, painter);
+  } else {
+    paintTall(size, color, painter);
+  }
+  const double half = 0.5 * size.width;
+  const double low = car ? 0.34 * size.height : std::min(0.6, 0.3 * size.height);
+  const double high = low + (car ? 0.2 : 0.13) * std::min(size.height, 2.5);
+  const bool braking = brakeLightsOn(vehicle);
+  paintLights({-0.5 * size.length, (braking ? 0.45 : 0.55) * half, 0.97 * half, low, high},
+              braking ? kBrakeLight : kTailLight, painter);
+  paintLights({0.5 * size.length, 0.6 * half, 0.95 * half, low, high}, kHeadlight, painter);
+}
+
 }  // namespace
 
 bool brakeLightsOn(const traffic::Vehicle& vehicle) {
@@ -241,20 +280,11 @@ VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance, Body
   Painter painter(vehicle, instance);
   const Color color = bodyColor(vehicle, colors);
   paintShadow(size, painter);
-  paintWheels(size, painter);
-  const bool car = traffic::classOf(size) == traffic::VehicleClass::kCar;  // with a cabin
-  if (car) {
-    paintCar(size, color, painter);
+  if (traffic::isUpright(size)) {
+    paintUpright(size, color, painter);
   } else {
-    paintTall(size, color, painter);
+    paintVehicle(vehicle, color, painter);
   }
-  const double half = 0.5 * size.width;
-  const double low = car ? 0.34 * size.height : std::min(0.6, 0.3 * size.height);
-  const double high = low + (car ? 0.2 : 0.13) * std::min(size.height, 2.5);
-  const bool braking = brakeLightsOn(vehicle);
-  paintLights({-0.5 * size.length, (braking ? 0.45 : 0.55) * half, 0.97 * half, low, high},
-              braking ? kBrakeLight : kTailLight, painter);
-  paintLights({0.5 * size.length, 0.6 * half, 0.95 * half, low, high}, kHeadlight, painter);
   return painter.body();
 }
 

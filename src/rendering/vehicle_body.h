@@ -12,7 +12,7 @@
 namespace cdiff::rendering {
 
 // Other vehicles as shaded boxes: body, cabin, wheels, tail lights that show whether it brakes,
-// headlights, and a shadow below.
+// headlights, and a shadow below. Pedestrians and small objects stand upright and have no lights.
 
 /// Whether the brake lights are on: it slows down by more than 0.5 m/s^2, brakes by more than 0.1,
 /// or stands (below 0.1 m/s).

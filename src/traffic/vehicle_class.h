@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "e2e_cdiff/traffic/vehicle.h"
@@ -22,6 +23,15 @@ inline VehicleClass classOf(const VehicleDimensions& size) {
   if (size.width <= kNarrowBody) return VehicleClass::kNarrow;
   const bool large = size.height > kTallBody || size.length > kLongBody;
   return large ? VehicleClass::kLarge : VehicleClass::kCar;
+}
+
+/// Whether a box is that of a pedestrian, a bicycle or a small object: shorter than any car.
+inline bool isSmall(const VehicleDimensions& size) { return size.length < 2.0; }
+
+/// Whether a box stands upright: that of a pedestrian or of a still object.
+inline bool isUpright(const VehicleDimensions& size) {
+  constexpr double kWidest = 1.1;  // [m]
+  return std::max(size.length, size.width) <= kWidest;
 }
 
 }  // namespace cdiff::traffic

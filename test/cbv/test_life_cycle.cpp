@@ -119,6 +119,18 @@ TEST(LifeCycle, OnlyTheNamedBecomeCbvs) {
   EXPECT_EQ(reasonOf(selection, "other"), kNotNamed);
 }
 
+TEST(LifeCycle, PedestriansAndBicyclesNeverBecomeCbvs) {
+  CrossingWorld world({}, 2);
+  traffic::Vehicle walker = fromSouth("walker", -30.0, 9.0);
+  walker.dimensions = {0.4, 0.6, 1.8};
+  traffic::Vehicle cyclist = fromNorth("cyclist", 30.0, 9.0);
+  cyclist.dimensions = {1.8, 0.6, 1.7};
+  const auto selection = world.selector.update(crossingSnapshot(kFirst, 70.0, {walker, cyclist}));
+  EXPECT_TRUE(selection.assignments.empty());
+  EXPECT_EQ(reasonOf(selection, "walker"), kTooSmall);
+  EXPECT_EQ(reasonOf(selection, "cyclist"), kTooSmall);
+}
+
 TEST(LifeCycle, RiftNeverRanksAgain) {
   CrossingWorld world({}, 1);
   world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("weak", -20.0, 2.0)}));

@@ -157,6 +157,26 @@ TEST(FrontCamera, PaintsAVehicleWhereItIs) {
   }
 }
 
+// Feet at depth 10 are at row 47.5 + 80 * 1.4 / 10 = 58.7, and the head ends at 47.5 - 3.2 = 44.3.
+// Shoulders reach 0.3 m to each side: 2.4 columns.
+TEST(FrontCamera, APedestrianStandsUprightWithoutLights) {
+  FrontCamera camera(levelCamera(), straightRoad());
+  const traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
+  traffic::Vehicle walker = vehicleAt("walker", 10.7, 0.0);
+  walker.dimensions = {0.4, 0.6, 1.8};
+  walker.state.speed = 0.0;  // a vehicle would show brake lights
+  const auto image = camera.render(snapshotOf({ego, walker}), ego);
+  const auto empty = camera.render(snapshotOf({ego}), ego);
+  for (const int row : {45, 50, 57}) EXPECT_NE(pixelAt(image, 79, row), pixelAt(empty, 79, row));
+  EXPECT_NE(pixelAt(image, 79, 50), pixelAt(image, 79, 57));  // body and legs
+  for (const int row : {42, 60}) EXPECT_EQ(pixelAt(image, 79, row), pixelAt(empty, 79, row));
+  for (const int column : {75, 84})
+    EXPECT_EQ(pixelAt(image, column, 50), pixelAt(empty, column, 50)) << column;
+  for (int row = 44; row < 59; ++row)
+    for (int column = 76; column < 84; ++column)
+      EXPECT_NE(pixelAt(image, column, row), kBrakeLight) << column << " " << row;
+}
+
 TEST(FrontCamera, TailLightsBecomeBrakeLights) {
   FrontCamera camera(levelCamera(), straightRoad());
   const traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
