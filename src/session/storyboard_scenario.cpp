@@ -116,6 +116,10 @@ void chooseCbvs(const Scenario& scenario, const Entity& ego, ScenarioOptions& op
   for (const Entity& entity : scenario.entities) {
     const std::string planner = &entity == &ego ? "" : plannerOf(entity, planners::Role::kCbv);
     if (planner.empty()) continue;
+    if (entity.kind != Entity::Kind::kVehicle) {
+      throw InputError(entity.source.text() + ": '" + entity.name + "' has the controller '" +
+                       planner + "'; expected a car or another motor vehicle, which it can drive");
+    }
     if (!chosen.empty() && planner != chosen) {
       throw InputError(entity.source.text() + ": the controller is '" + planner + "'; expected '" +
                        chosen + "' as before, because all CBVs have one planner");
@@ -130,23 +134,33 @@ void chooseCbvs(const Scenario& scenario, const Entity& ego, ScenarioOptions& op
 /// A criterion of scenario_runner, and the rule that it stands for.
 struct Criterion {
   const char* name;
-  double VerdictOptions::*most;  ///< may be 0 at most
+  double VerdictOptions::*limit;
+  bool given = false;  ///< whether the file gives the limit, else it is 0
 };
 
 constexpr Criterion kCriteria[] = {
     {"criteria_collisiontest", &VerdictOptions::maximum_ego_collisions},
+    {"criteria_drivendistancetest", &VerdictOptions::minimum_ego_distance, true},
     {"criteria_runningredlighttest", &VerdictOptions::maximum_red_lights},
     {"criteria_runningstoptest", &VerdictOptions::maximum_stop_signs},
     {"criteria_wronglanetest", &VerdictOptions::maximum_outside_lanes_percent},
     {"criteria_onsidewalktest", &VerdictOptions::maximum_outside_lanes_percent},
     {"criteria_keeplanetest", &VerdictOptions::maximum_outside_lanes_percent}};
 
+/// A condition on a parameter is a criterion by its own name, or by that of the parameter.
 void addCriterion(const storyboard::Condition& condition, VerdictOptions& verdict) {
   const auto* const parameter = std::get_if<storyboard::ParameterCondition>(&condition.what);
   if (parameter == nullptr) return;
-  const std::string name = lowerCase(parameter->name);
-  for (const Criterion& criterion : kCriteria)
-    if (name == criterion.name) verdict.*criterion.most = 0.0;
+  for (const Criterion& criterion : kCriteria) {
+    if (lowerCase(condition.name) != criterion.name && lowerCase(parameter->name) != criterion.name)
+      continue;
+    const auto limit = criterion.given ? core::parseNumber(parameter->value) : 0.0;
+    if (!limit || *limit < 0.0) {
+      throw InputError(condition.source.text() + ": '" + condition.name + "' has the value '" +
+                       core::shortened(parameter->value) + "'; expected a distance in meters");
+    }
+    verdict.*criterion.limit = *limit;
+  }
 }
 
 /// A session passes that ends without a contact that is the ego's fault and meets the criteria of

@@ -10,15 +10,20 @@ namespace {
 
 using ActionWhat = decltype(Action::what);
 
-Dynamics readDynamics(const XoscElement& element) {
+Dynamics::Shape readShape(const XoscElement& element) {
   using Shape = Dynamics::Shape;
-  using Dimension = Dynamics::Dimension;
   constexpr Shape kShapes[] = {Shape::kStep, Shape::kLinear, Shape::kCubic, Shape::kSinusoidal};
+  return kShapes[element.choice("dynamicsShape", {"step", "linear", "cubic", "sinusoidal"})];
+}
+
+/// In scenario_runner a step lasts as long as its value says, and takes effect at once.
+Dynamics readDynamics(const XoscElement& element, const Reading& reading) {
+  using Dimension = Dynamics::Dimension;
   constexpr Dimension kDimensions[] = {Dimension::kTime, Dimension::kDistance, Dimension::kRate};
   Dynamics dynamics;
-  dynamics.shape =
-      kShapes[element.choice("dynamicsShape", {"step", "linear", "cubic", "sinusoidal"})];
-  if (dynamics.shape == Shape::kStep) return dynamics;
+  dynamics.shape = readShape(element);
+  if (dynamics.shape == Dynamics::Shape::kStep && (!reading.carla || !element.has("value")))
+    return dynamics;
   dynamics.dimension =
       kDimensions[element.choice("dynamicsDimension", {"time", "distance", "rate"})];
   dynamics.value = std::abs(element.number("value"));
@@ -29,9 +34,9 @@ ActionWhat readTeleport(const XoscElement& element, Reading& reading) {
   return TeleportAction{readPosition(element, reading)};
 }
 
-ActionWhat readSpeed(const XoscElement& element, Reading&) {
+ActionWhat readSpeed(const XoscElement& element, Reading& reading) {
   SpeedAction action;
-  action.dynamics = readDynamics(element.child("SpeedActionDynamics"));
+  action.dynamics = readDynamics(element.child("SpeedActionDynamics"), reading);
   const XoscElement target = element.child("SpeedActionTarget").only();
   action.value = target.number("value");
   if (target.name() == "RelativeTargetSpeed") {
@@ -44,9 +49,9 @@ ActionWhat readSpeed(const XoscElement& element, Reading&) {
   return action;
 }
 
-ActionWhat readLaneChange(const XoscElement& element, Reading&) {
+ActionWhat readLaneChange(const XoscElement& element, Reading& reading) {
   LaneChangeAction action;
-  action.dynamics = readDynamics(element.child("LaneChangeActionDynamics"));
+  action.dynamics = readDynamics(element.child("LaneChangeActionDynamics"), reading);
   action.offset = element.number("targetLaneOffset", 0.0);
   const XoscElement target = element.child("LaneChangeTarget").only();
   action.lane = target.integer("value");
@@ -54,14 +59,25 @@ ActionWhat readLaneChange(const XoscElement& element, Reading&) {
   return action;
 }
 
+/// Without a largest acceleration the offset changes at the usual speed.
+Dynamics readOffsetDynamics(const XoscElement& element) {
+  constexpr double kUsual = 1.0;  // [m/s] across the lane
+  Dynamics dynamics;
+  dynamics.shape = readShape(element);
+  dynamics.dimension = Dynamics::Dimension::kRate;
+  dynamics.value = kUsual;
+  const double acceleration = element.number("maxLateralAcc", 0.0);
+  const bool curved =
+      dynamics.shape == Dynamics::Shape::kCubic || dynamics.shape == Dynamics::Shape::kSinusoidal;
+  if (!curved || acceleration <= 0.0) return dynamics;
+  dynamics.dimension = Dynamics::Dimension::kAcceleration;
+  dynamics.value = acceleration;
+  return dynamics;
+}
+
 ActionWhat readLaneOffset(const XoscElement& element, Reading&) {
   LaneOffsetAction action;
-  const XoscElement dynamics = element.child("LaneOffsetActionDynamics");
-  constexpr double kUsual = 1.0;  // [m/s] across the lane, where only an acceleration is given
-  action.dynamics.shape = dynamics.text("dynamicsShape") == "step" ? Dynamics::Shape::kStep
-                                                                   : Dynamics::Shape::kSinusoidal;
-  action.dynamics.dimension = Dynamics::Dimension::kRate;
-  action.dynamics.value = kUsual;
+  action.dynamics = readOffsetDynamics(element.child("LaneOffsetActionDynamics"));
   const XoscElement target = element.child("LaneOffsetTarget").only();
   if (target.name() != "AbsoluteTargetLaneOffset")
     Reading::refuse(target, "an offset from another vehicle's");
@@ -74,13 +90,7 @@ ActionWhat readAcquirePosition(const XoscElement& element, Reading& reading) {
 }
 
 ActionWhat readAssignRoute(const XoscElement& element, Reading& reading) {
-  const XoscElement route = reading.catalogs.resolve(element.only());
-  RouteAction action;
-  if (route.flag("closed", false)) Reading::refuse(route, "a closed route");
-  for (const XoscElement& waypoint : route.children("Waypoint"))
-    action.waypoints.push_back(readPosition(waypoint, reading));
-  if (action.waypoints.empty()) route.fail("expected at least one <Waypoint>");
-  return action;
+  return RouteAction{readWaypoints(element.only(), reading)};
 }
 
 void readTiming(const XoscElement& element, FollowTrajectoryAction& action) {
@@ -115,6 +125,22 @@ ActionWhat readTrajectory(const XoscElement& element, Reading& reading) {
   return action;
 }
 
+Side readSide(const XoscElement& element, const char* ahead, const char* behind) {
+  if (!element.has("displacement")) return Side::kPresent;
+  constexpr Side kSides[] = {Side::kPresent, Side::kAheadOrLeft, Side::kBehindOrRight};
+  return kSides[element.choice("displacement", {"any", ahead, behind})];
+}
+
+SpeedLimits readLimits(const XoscElement& element) {
+  SpeedLimits limits;
+  limits.acceleration = element.number("maxAcceleration", limits.acceleration);
+  limits.deceleration = element.number("maxDeceleration", limits.acceleration);
+  limits.speed = element.number("maxSpeed", limits.speed);
+  if (std::min({limits.acceleration, limits.deceleration, limits.speed}) < 0.0)
+    element.fail("expected limits of at least 0");
+  return limits;
+}
+
 ActionWhat readDistance(const XoscElement& element, Reading&) {
   DistanceAction action;
   action.entity = element.text("entityRef");
@@ -122,12 +148,70 @@ ActionWhat readDistance(const XoscElement& element, Reading&) {
   action.value = element.number(action.time_gap ? "timeGap" : "distance");
   action.freespace = element.flag("freespace", false);
   action.continuous = element.flag("continuous", false);
-  if (element.text("displacement", "any") != "any")
-    Reading::refuse(element, "a 'displacement' other than 'any'");
-  if (const auto limits = element.find("DynamicConstraints")) {
-    Reading::refuseAttributes(*limits, {"maxDeceleration", "maxSpeed"});
-    action.acceleration = limits->number("maxAcceleration", action.acceleration);
+  action.side = readSide(element, "leadingReferencedEntity", "trailingReferencedEntity");
+  if (const auto limits = element.find("DynamicConstraints")) action.limits = readLimits(*limits);
+  return action;
+}
+
+/// Its largest acceleration has no effect.
+ActionWhat readLateralDistance(const XoscElement& element, Reading&) {
+  constexpr double kUsual = 1.0;  // [m/s] across the lanes, where only an acceleration is given
+  LateralDistanceAction action;
+  action.entity = element.text("entityRef");
+  if (element.has("distance")) action.value = element.number("distance");
+  action.freespace = element.flag("freespace", false);
+  action.continuous = element.flag("continuous", false);
+  action.side = readSide(element, "leftToReferencedEntity", "rightToReferencedEntity");
+  if (const auto limits = element.find("DynamicConstraints"))
+    action.speed = limits->number("maxSpeed", kUsual);
+  return action;
+}
+
+SpeedAction readFinalSpeed(const XoscElement& element) {
+  SpeedAction speed;
+  speed.value = element.number("value");
+  if (element.name() == "RelativeSpeedToMaster") {
+    speed.factor = element.choice("speedTargetValueType", {"delta", "factor"}) == 1;
+    speed.continuous = true;  // with the master's speed
   }
+  return speed;
+}
+
+ActionWhat readSynchronize(const XoscElement& element, Reading& reading) {
+  SynchronizeAction action;
+  action.master = element.text("masterEntityRef");
+  action.master_target = readOnlyPosition(element.child("TargetPositionMaster"), reading);
+  action.target = readOnlyPosition(element.child("TargetPosition"), reading);
+  action.master_tolerance = element.number("targetToleranceMaster", action.master_tolerance);
+  action.tolerance = element.number("targetTolerance", action.tolerance);
+  const auto last = element.find("FinalSpeed");
+  if (!last) return action;
+  const XoscElement speed = last->only();
+  action.final_speed = readFinalSpeed(speed);
+  if (const auto steady = speed.find("TargetDistanceSteadyState"))
+    action.steady_distance = steady->number("distance");
+  if (const auto steady = speed.find("TargetTimeSteadyState"))
+    action.steady_time = steady->number("time");
+  return action;
+}
+
+/// A speed without a time is reached as fast as the limits allow.
+ActionWhat readProfile(const XoscElement& element, Reading&) {
+  if (element.has("entityRef")) Reading::refuse(element, "a profile of relative speeds");
+  const auto constraints = element.find("DynamicConstraints");
+  const SpeedLimits limits = constraints ? readLimits(*constraints) : SpeedLimits{};
+  SpeedProfileAction action;
+  for (const XoscElement& entry : element.children("SpeedProfileEntry")) {
+    SpeedAction part;
+    part.value = entry.number("speed");
+    if (part.value < 0.0) Reading::refuse(entry, "driving backward");
+    const bool timed = entry.has("time");
+    part.dynamics = {Dynamics::Shape::kLinear,
+                     timed ? Dynamics::Dimension::kTime : Dynamics::Dimension::kRate,
+                     timed ? std::max(0.0, entry.number("time")) : limits.acceleration};
+    action.parts.push_back(part);
+  }
+  if (action.parts.empty()) element.fail("expected at least one <SpeedProfileEntry>");
   return action;
 }
 
@@ -154,7 +238,7 @@ ActionWhat readParameter(const XoscElement& element, Reading&) {
 }
 
 ActionWhat readController(const XoscElement& element, Reading& reading) {
-  return ControllerAction{reading.catalogs.resolve(element.only()).text("name")};
+  return ControllerAction{readControllerName(element.only(), reading)};
 }
 
 ActionWhat readNothing(const XoscElement&, Reading&) { return NoAction{}; }
@@ -181,9 +265,9 @@ constexpr ActionRow kActions[] = {{"TeleportAction", readTeleport},
                                   {"EnvironmentAction", readNothing},
                                   {"VisibilityAction", readNothing},
                                   {"AppearanceAction", readNothing},
-                                  {"LateralDistanceAction", nullptr},
-                                  {"SpeedProfileAction", nullptr},
-                                  {"SynchronizeAction", nullptr},
+                                  {"LateralDistanceAction", readLateralDistance},
+                                  {"SpeedProfileAction", readProfile},
+                                  {"SynchronizeAction", readSynchronize},
                                   {"RandomRouteAction", nullptr},
                                   {"InfrastructureAction", nullptr},
                                   {"TrafficAction", nullptr},

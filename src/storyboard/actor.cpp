@@ -21,11 +21,30 @@ void finish(std::shared_ptr<Performance>& performing) {
   performing.reset();
 }
 
+/// The largest slope and curvature of a change by 1 within 1.
+struct Steepness {
+  double slope = 1.0;
+  double curvature = 0.0;
+};
+
+Steepness steepnessOf(Dynamics::Shape shape) {
+  if (shape == Dynamics::Shape::kCubic) return {1.5, 6.0};  // of 3 x^2 - 2 x^3
+  if (shape == Dynamics::Shape::kSinusoidal)                // of (1 - cos(pi x)) / 2
+    return {0.5 * core::kPi, 0.5 * core::kPi * core::kPi};
+  return {};
+}
+
 /// How long a change of `difference` takes, in the dimension of the dynamics.
 double extentOf(const Dynamics& dynamics, double difference) {
-  if (dynamics.shape == Dynamics::Shape::kStep) return 0.0;
-  if (dynamics.dimension != Dynamics::Dimension::kRate) return dynamics.value;
-  return dynamics.value > 0.0 ? std::abs(difference) / dynamics.value : 0.0;
+  using Dimension = Dynamics::Dimension;
+  const bool direct =
+      dynamics.dimension == Dimension::kTime || dynamics.dimension == Dimension::kDistance;
+  if (direct) return dynamics.value;
+  if (dynamics.shape == Dynamics::Shape::kStep || dynamics.value <= 0.0) return 0.0;
+  const Steepness most = steepnessOf(dynamics.shape);
+  const double change = std::abs(difference) / dynamics.value;
+  return dynamics.dimension == Dimension::kRate ? most.slope * change
+                                                : std::sqrt(most.curvature * change);
 }
 
 }  // namespace
@@ -49,8 +68,9 @@ void Actor::takeRoute(std::shared_ptr<const map::Route> route) {
 
 void Actor::leave() {
   trajectory_.reset();
-  offset_change_.reset();
+  stopOffset();
   speed_change_.reset();
+  next_speeds_.clear();
   wanted_speed_ = nullptr;
   finish(lateral_);
   finish(longitudinal_);
@@ -58,7 +78,7 @@ void Actor::leave() {
 
 void Actor::place(const MapPose& place) {
   trajectory_.reset();
-  offset_change_.reset();
+  stopOffset();
   finish(lateral_);
   reference_ = place;
   const auto route = places_.routeFrom(place);
@@ -76,31 +96,64 @@ void Actor::startSpeed(const Performing& performing) {
   if (trajectory_ && !trajectory_->times.empty()) endTrajectory();
   replace(longitudinal_, performing);
   speed_change_.reset();
+  next_speeds_.clear();
   wanted_speed_ = nullptr;
 }
 
-void Actor::setSpeed(const Dynamics& dynamics, double speed, const Performing& performing) {
+void Actor::setSpeeds(std::deque<std::pair<Dynamics, double>> targets,
+                      const Performing& performing) {
   startSpeed(performing);
-  double extent = extentOf(dynamics, speed - speed_);
-  if (dynamics.dimension == Dynamics::Dimension::kDistance)
-    extent = 2.0 * extent / std::max(0.1, speed + speed_);
-  speed_change_ = Transition(speed_, speed, dynamics.shape, extent, false);
-  if (!speed_change_->over()) return;
-  speed_ = speed;
-  speed_change_.reset();
+  next_speeds_ = std::move(targets);
+  nextSpeed();
+}
+
+/// Begins with the next change of the speed. One that takes no time is done at once.
+void Actor::nextSpeed() {
+  while (!next_speeds_.empty()) {
+    const auto [dynamics, speed] = next_speeds_.front();
+    next_speeds_.pop_front();
+    double extent = extentOf(dynamics, speed - speed_);
+    if (dynamics.shape == Dynamics::Shape::kStep) speed_ = speed;
+    if (dynamics.dimension == Dynamics::Dimension::kDistance)
+      extent = 2.0 * extent / std::max(0.1, speed + speed_);
+    speed_change_ = Transition(speed_, speed, dynamics.shape, extent, false);
+    if (!speed_change_->over()) return;
+    speed_ = speed;
+    speed_change_.reset();
+  }
   finish(longitudinal_);
 }
 
-void Actor::adaptSpeed(std::function<double()> wanted, double acceleration,
+void Actor::adaptSpeed(std::function<double()> wanted, const SpeedLimits& limits,
                        std::function<bool()> reached, const Performing& performing) {
   startSpeed(performing);
   wanted_speed_ = std::move(wanted);
-  adapting_acceleration_ = acceleration;
+  speed_limits_ = limits;
   speed_reached_ = std::move(reached);
+}
+
+void Actor::shift(double meters) {
+  if (!route_) return advanceStraight(meters);
+  const double most = route_->path().length();
+  arc_length_ = std::clamp(arc_length_ + meters, 0.0, most);
+  const geometry::Pose2d on_path = route_->path().extendedPoseAt(arc_length_);
+  reference_ = {{on_path.toMap({0.0, offset_}), on_path.heading},
+                route_->path().pointAt(arc_length_).z()};
+}
+
+const geometry::Polyline* Actor::path() const {
+  if (trajectory_ && trajectory_->times.empty()) return &trajectory_->line;
+  return route_ ? &route_->path() : nullptr;
+}
+
+void Actor::stopOffset() {
+  offset_change_.reset();
+  wanted_offset_ = nullptr;
 }
 
 void Actor::startOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
   replace(lateral_, performing);
+  wanted_offset_ = nullptr;
   if (!route_) return finish(lateral_);  // there is nothing to be beside
   const bool by_distance = dynamics.dimension == Dynamics::Dimension::kDistance;
   offset_change_ = Transition(offset_, offset, dynamics.shape, extentOf(dynamics, offset - offset_),
@@ -122,6 +175,17 @@ void Actor::setOffset(const Dynamics& dynamics, double offset, const Performing&
   startOffset(dynamics, offset, performing);
 }
 
+void Actor::adaptOffset(std::function<double()> wanted, double speed, bool always,
+                        const Performing& performing) {
+  if (trajectory_) endTrajectory();
+  replace(lateral_, performing);
+  offset_change_.reset();
+  if (!route_) return finish(lateral_);
+  wanted_offset_ = std::move(wanted);
+  offset_speed_ = speed;
+  offset_kept_ = always;
+}
+
 void Actor::setRoute(map::Route route) {
   if (trajectory_) endTrajectory();
   takeRoute(std::make_shared<const map::Route>(std::move(route)));
@@ -130,7 +194,7 @@ void Actor::setRoute(map::Route route) {
 void Actor::follow(std::vector<MapPose> places, std::vector<double> times,
                    const Performing& performing) {
   replace(lateral_, performing);
-  offset_change_.reset();
+  stopOffset();
   trajectory_.reset();
   const bool timed = !times.empty();
   if (timed) startSpeed(nullptr);
@@ -144,6 +208,7 @@ void Actor::follow(std::vector<MapPose> places, std::vector<double> times,
 void Actor::changeSpeed(double step) {
   if (longitudinal_ && longitudinal_->stopped) {
     speed_change_.reset();
+    next_speeds_.clear();
     wanted_speed_ = nullptr;
     finish(longitudinal_);
   }
@@ -152,10 +217,11 @@ void Actor::changeSpeed(double step) {
     speed_ = std::max(0.0, speed_change_->value());
     if (!speed_change_->over()) return;
     speed_change_.reset();
-    finish(longitudinal_);
+    nextSpeed();
   } else if (wanted_speed_) {
-    const double most = adapting_acceleration_ * step;
-    speed_ = std::max(0.0, speed_ + std::clamp(wanted_speed_() - speed_, -most, most));
+    const double wanted = std::clamp(wanted_speed_(), 0.0, speed_limits_.speed);
+    speed_ += std::clamp(wanted - speed_, -speed_limits_.deceleration * step,
+                         speed_limits_.acceleration * step);
     if (!speed_reached_ || !speed_reached_()) return;
     wanted_speed_ = nullptr;
     finish(longitudinal_);
@@ -176,6 +242,26 @@ void Actor::prolongRoute() {
   if (!route_ends_) route_ = longer;
 }
 
+void Actor::changeOffset(double step, double meters) {
+  if (lateral_ && lateral_->stopped) {
+    stopOffset();
+    finish(lateral_);
+  }
+  bool reached = false;
+  if (offset_change_) {
+    offset_change_->advance(step, meters);
+    offset_ = offset_change_->value();
+    reached = offset_change_->over();
+  } else if (wanted_offset_) {
+    const double wanted = wanted_offset_();
+    offset_ += std::clamp(wanted - offset_, -offset_speed_ * step, offset_speed_ * step);
+    reached = !offset_kept_ && offset_ == wanted;
+  }
+  if (!reached) return;
+  stopOffset();
+  finish(lateral_);
+}
+
 void Actor::advanceOnLanes(double meters, double step) {
   prolongRoute();
   const geometry::Polyline& path = route_->path();
@@ -184,19 +270,8 @@ void Actor::advanceOnLanes(double meters, double step) {
     meters = path.length() - arc_length_;
     speed_ = 0.0;
   }
-  if (lateral_ && lateral_->stopped) {
-    offset_change_.reset();
-    finish(lateral_);
-  }
   arc_length_ += meters;
-  if (offset_change_) {
-    offset_change_->advance(step, meters);
-    offset_ = offset_change_->value();
-    if (offset_change_->over()) {
-      offset_change_.reset();
-      finish(lateral_);
-    }
-  }
+  changeOffset(step, meters);
   if (meters <= 0.0 && offset_ == before) return;
   const geometry::Pose2d on_path = path.extendedPoseAt(arc_length_);
   const double turned = meters > 0.0 ? std::atan2(offset_ - before, meters) : 0.0;

@@ -2,10 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "storyboard/places.h"
@@ -58,15 +60,25 @@ class Actor {
   /// Takes it from where somebody else drove it.
   void resume(const traffic::VehicleState& state);
   /// Each of these replaces the action before it in the same domain.
-  void setSpeed(const Dynamics& dynamics, double speed, const Performing& performing);
-  /// Keeps the speed that `wanted` says, changed by at most `acceleration` [m/s^2], until `reached`
-  /// says so; always where it is nullptr.
-  void adaptSpeed(std::function<double()> wanted, double acceleration,
+  void setSpeed(const Dynamics& dynamics, double speed, const Performing& performing) {
+    setSpeeds({{dynamics, speed}}, performing);
+  }
+  /// Several speeds [m/s], one after the other.
+  void setSpeeds(std::deque<std::pair<Dynamics, double>> targets, const Performing& performing);
+  /// Keeps the speed that `wanted` says, within the limits, until `reached` says so; always where
+  /// it is nullptr.
+  void adaptSpeed(std::function<double()> wanted, const SpeedLimits& limits,
                   std::function<bool()> reached, const Performing& performing);
+  /// Moves along its lane at once, back for a negative distance.
+  void shift(double meters);
   /// `target`: where it ends abreast, in or beside the middle of that lane.
   void changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle,
                   const Eigen::Vector2d& target, const Performing& performing);
   void setOffset(const Dynamics& dynamics, double offset, const Performing& performing);
+  /// Keeps the offset that `wanted` says [m, to the left of the lane], changed by at most `speed`
+  /// [m/s], until it is reached, or always.
+  void adaptOffset(std::function<double()> wanted, double speed, bool always,
+                   const Performing& performing);
   void setRoute(map::Route route);
   /// `times` [s] of simulated time, one for each place, or none.
   void follow(std::vector<MapPose> places, std::vector<double> times, const Performing& performing);
@@ -82,6 +94,9 @@ class Actor {
   double acceleration() const { return acceleration_; }
   /// nullptr off every lane.
   const map::Route* route() const { return route_.get(); }
+  /// The line that it follows: a trajectory without times, or its lanes; nullptr where there is
+  /// none.
+  const geometry::Polyline* path() const;
 
  private:
   struct Trajectory {
@@ -94,6 +109,9 @@ class Actor {
   void takeRoute(std::shared_ptr<const map::Route> route);
   void startOffset(const Dynamics& dynamics, double offset, const Performing& performing);
   void startSpeed(const Performing& performing);
+  void nextSpeed();
+  void stopOffset();
+  void changeOffset(double step, double meters);
   void prolongRoute();
   void changeSpeed(double step);
   void advanceOnLanes(double meters, double step);
@@ -112,9 +130,13 @@ class Actor {
   double offset_ = 0.0;  ///< to the left of the route [m]
   std::optional<Transition> speed_change_;
   std::function<double()> wanted_speed_;
-  double adapting_acceleration_ = 0.0;
+  std::deque<std::pair<Dynamics, double>> next_speeds_;
+  SpeedLimits speed_limits_;
   std::function<bool()> speed_reached_;
   std::optional<Transition> offset_change_;
+  std::function<double()> wanted_offset_;
+  double offset_speed_ = 0.0;
+  bool offset_kept_ = false;  ///< when it is reached
   std::optional<Trajectory> trajectory_;
   Performing longitudinal_;
   Performing lateral_;

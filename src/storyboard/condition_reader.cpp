@@ -72,6 +72,17 @@ void readTraveled(const XoscElement& element, const Reading&, EntityCondition& c
   condition.value = element.number("value");
 }
 
+void readEndOfRoad(const XoscElement& element, const Reading&, EntityCondition& condition) {
+  condition.measure = Measure::kEndOfRoad;
+  condition.rule = Rule::kGreaterOrEqual;
+  condition.value = element.number("duration");
+}
+
+void readOffroad(const XoscElement& element, const Reading& reading, EntityCondition& condition) {
+  readEndOfRoad(element, reading, condition);
+  condition.measure = Measure::kOffroad;
+}
+
 void readReach(const XoscElement& element, const Reading& reading, EntityCondition& condition) {
   condition.measure = Measure::kReachPosition;
   condition.rule = Rule::kLessOrEqual;
@@ -134,8 +145,8 @@ constexpr ConditionRow kConditions[] = {{"SpeedCondition", readSpeed},
                                         {"TimeHeadwayCondition", readHeadway},
                                         {"TimeToCollisionCondition", readTimeToCollision},
                                         {"CollisionCondition", readCollision},
-                                        {"EndOfRoadCondition", nullptr},
-                                        {"OffroadCondition", nullptr},
+                                        {"EndOfRoadCondition", readEndOfRoad},
+                                        {"OffroadCondition", readOffroad},
                                         {"RelativeClearanceCondition", nullptr},
                                         {"RelativeAngleCondition", nullptr},
                                         {"AngleCondition", nullptr}};
@@ -196,10 +207,13 @@ Condition readCondition(const XoscElement& element, Reading& reading) {
   using Edge = Condition::Edge;
   constexpr Edge kEdges[] = {Edge::kNone, Edge::kRising, Edge::kFalling, Edge::kRisingOrFalling};
   Condition condition;
-  condition.name = element.text("name", "");
+  condition.name = element.plainText("name");
   condition.source = element.source();
-  condition.edge =
-      kEdges[element.choice("conditionEdge", {"none", "rising", "falling", "risingOrFalling"})];
+  const bool known = element.has("conditionEdge") && !reading.carla;  // scenario_runner has none
+  if (known) {
+    condition.edge =
+        kEdges[element.choice("conditionEdge", {"none", "rising", "falling", "risingOrFalling"})];
+  }
   condition.delay = std::max(0.0, element.number("delay", 0.0));
   try {
     if (const auto by_value = element.find("ByValueCondition")) {

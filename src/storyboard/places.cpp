@@ -18,6 +18,10 @@ using Kind = Position::Kind;
 
 constexpr double kRouteLength = 2000.0;  // [m]
 
+Eigen::Vector3d pointOf(const MapPose& place) {
+  return {place.pose.position.x(), place.pose.position.y(), place.elevation};
+}
+
 bool drivesForward(int lane) { return lane <= 0; }
 
 /// The id of a lane so many lanes to the left of another, as its driver sees it; 0 is no lane.
@@ -133,6 +137,23 @@ MapPose Places::relativeToRoad(const Position& position, const MapPose& referenc
   return place;
 }
 
+/// With a lane, abreast of the route in that lane of the same road.
+MapPose Places::onRoute(const Position& position, const PoseOf& pose_of) const {
+  const MapPose start = resolve(position.route.front(), pose_of);
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 1; i < position.route.size(); ++i)
+    points.push_back(pointOf(resolve(position.route[i], pose_of)));
+  const map::Route route = routeThrough(start, std::move(points));
+  const geometry::Polyline& path = route.path();
+  MapPose place{path.extendedPoseAt(position.s), path.pointAt(position.s).z()};
+  if (position.lane != 0) {
+    const map::RoadPlace road = roadPlace(place);
+    return lanePose(road.road, position.lane, road.s, position.t);
+  }
+  place.pose.position = place.pose.toMap({0.0, position.t});
+  return place;
+}
+
 MapPose Places::withoutOwnHeading(const Position& position, const PoseOf& pose_of) const {
   const Eigen::Vector3d& point = position.point;
   switch (position.kind) {
@@ -140,6 +161,8 @@ MapPose Places::withoutOwnHeading(const Position& position, const PoseOf& pose_o
       return lanePose(position.road, position.lane, position.s, position.t);
     case Kind::kRoad:
       return onRoad(position.road, position.s, position.t);
+    case Kind::kRoute:
+      return onRoute(position, pose_of);
     case Kind::kRelativeLane:
       return relativeToLane(position, pose_of(position.entity));
     case Kind::kRelativeRoad:
@@ -173,7 +196,9 @@ MapPose Places::resolve(const Position& position, const PoseOf& pose_of) const {
     place.pose.heading = core::wrapAngle(place.pose.heading);
     return place;
   } catch (const InputError& error) {
-    throw InputError(position.source.text() + ": " + error.what());
+    const std::string text = error.what();
+    const bool placed = text.rfind(position.source.file + ":", 0) == 0;
+    throw InputError((placed ? "" : position.source.text() + ": ") + text);
   }
 }
 
@@ -199,10 +224,38 @@ map::Route Places::prolonged(const map::Route& route) const {
   return graph_.extended(route, route.length() + kRouteLength);
 }
 
+/// Whether the way from a point to the next leads past a place.
+bool Places::leadsPast(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                       const Eigen::Vector2d& place) const {
+  constexpr double kBeside = 2.0;  // [m]
+  const map::Route way = map::routeThroughPoints(graph_, {from, to});
+  const geometry::Projection found = way.path().project(place);
+  return (way.path().pointAt(found.arc_length).head<2>() - place).norm() < kBeside &&
+         found.arc_length > 0.0;
+}
+
 map::Route Places::routeThrough(const MapPose& place, std::vector<Eigen::Vector3d> points) const {
-  const Eigen::Vector2d& own = place.pose.position;
-  points.insert(points.begin(), {own.x(), own.y(), place.elevation});
+  while (points.size() > 1 && leadsPast(points[0], points[1], place.pose.position))
+    points.erase(points.begin());
+  points.insert(points.begin(), pointOf(place));
   return graph_.extended(map::routeThroughPoints(graph_, points), kRouteLength);
+}
+
+bool Places::isOnLane(const MapPose& place) const {
+  constexpr double kReach = 5.0;  // [m]
+  const auto near = graph_.network().lanesNear(place.pose.position, place.elevation, kReach);
+  return std::any_of(near.begin(), near.end(), [&](const map::LaneMatch& match) {
+    const map::Lane& lane = graph_.network().lane(match.lane);
+    return std::abs(match.projection.lateral_offset) <= 0.5 * lane.width;
+  });
+}
+
+bool Places::isEndOfRoad(const MapPose& place) const {
+  constexpr double kNear = 0.5;  // [m]
+  const auto found = laneAt(place);
+  if (!found) return false;
+  const map::Lane& lane = graph_.network().lane(found->lane);
+  return lane.next.empty() && lane.centerline.length() - found->arc_length < kNear;
 }
 
 }  // namespace cdiff::storyboard

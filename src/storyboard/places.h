@@ -44,6 +44,9 @@ class Places {
   map::Route prolonged(const map::Route& route) const;
   /// The route from a place through points in the map frame. Throws InputError.
   map::Route routeThrough(const MapPose& place, std::vector<Eigen::Vector3d> points) const;
+  /// Whether a place is on a lane for cars, and whether it is where such a lane ends for good.
+  bool isOnLane(const MapPose& place) const;
+  bool isEndOfRoad(const MapPose& place) const;
   /// Heading of the nearest lane, or that of the place off every lane.
   double laneHeading(const MapPose& place) const;
 
@@ -51,6 +54,9 @@ class Places {
   const map::OpenDriveRoads& roads(const std::string& what) const;
   MapPose onRoad(const std::string& road, double s, double t) const;
   MapPose lanePose(const std::string& road, int lane, double s, double offset) const;
+  MapPose onRoute(const Position& position, const PoseOf& pose_of) const;
+  bool leadsPast(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                 const Eigen::Vector2d& place) const;
   MapPose withoutOwnHeading(const Position& position, const PoseOf& pose_of) const;
   MapPose relativeToLane(const Position& position, const MapPose& reference) const;
   MapPose relativeToRoad(const Position& position, const MapPose& reference) const;

@@ -88,6 +88,28 @@ Position readRelativeRoad(const XoscElement& element, const Reading& reading) {
   return position;
 }
 
+Position readRoutePosition(const XoscElement& element, const Reading& reading) {
+  Position position;
+  const XoscElement where = element.child("InRoutePosition").only();
+  if (where.name() == "FromCurrentEntity") {
+    position.kind = Kind::kObject;
+    position.entity = where.text("entityRef");
+    return position;
+  }
+  position.kind = Kind::kRoute;
+  position.route = readWaypoints(element.child("RouteRef").only(), reading);
+  if (position.route.size() < 2) element.fail("expected a route of at least two <Waypoint>");
+  position.s = where.number("pathS");
+  if (where.name() == "FromLaneCoordinates") {
+    position.lane = where.integer("laneId");
+    position.t = where.number("laneOffset", 0.0);
+  } else {
+    position.t = where.number("t", 0.0);
+  }
+  readOrientation(element, reading, position);
+  return position;
+}
+
 struct PositionRow {
   const char* element;
   Position (*read)(const XoscElement&, const Reading&);  ///< nullptr: refused
@@ -100,18 +122,32 @@ constexpr PositionRow kPositions[] = {{"WorldPosition", readWorld},
                                       {"RelativeObjectPosition", readObject},
                                       {"RelativeLanePosition", readRelativeLane},
                                       {"RelativeRoadPosition", readRelativeRoad},
-                                      {"RoutePosition", nullptr},
+                                      {"RoutePosition", readRoutePosition},
                                       {"TrajectoryPosition", nullptr},
                                       {"GeoPosition", nullptr}};
 
 }  // namespace
 
-Position readPosition(const XoscElement& parent, const Reading& reading) {
-  const XoscElement element = parent.child("Position").only();
+std::vector<Position> readWaypoints(const XoscElement& element, const Reading& reading) {
+  const XoscElement route = reading.catalogs.resolve(element);
+  if (route.flag("closed", false)) Reading::refuse(route, "a closed route");
+  std::vector<Position> waypoints;
+  for (const XoscElement& waypoint : route.children("Waypoint"))
+    waypoints.push_back(readPosition(waypoint, reading));
+  if (waypoints.empty()) route.fail("expected at least one <Waypoint>");
+  return waypoints;
+}
+
+Position readOnlyPosition(const XoscElement& holder, const Reading& reading) {
+  const XoscElement element = holder.only();
   const auto& row = rowOf(kPositions, element, "this kind of position");
   Position position = row.read(element, reading);
   position.source = element.source();
   return position;
+}
+
+Position readPosition(const XoscElement& parent, const Reading& reading) {
+  return readOnlyPosition(parent.child("Position"), reading);
 }
 
 std::vector<ElementSupport> positionSupport() {

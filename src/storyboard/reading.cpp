@@ -63,6 +63,14 @@ XoscElement Catalogs::resolve(const XoscElement& element) const {
   return element.name() == "CatalogReference" ? entry(element) : element;
 }
 
+std::string readControllerName(const XoscElement& element, const Reading& reading) {
+  const XoscElement controller = reading.catalogs.resolve(element);
+  if (const auto properties = controller.find("Properties"))
+    for (const XoscElement& property : properties->children("Property"))
+      if (property.text("name") == "module") return property.text("value");
+  return controller.text("name");
+}
+
 void Reading::refuse(const XoscElement& element, const std::string& what) {
   throw Unsupported(element.source().text() + ": <" + element.name() + ">: " + what +
                     " is not supported; --ignore-unsupported goes on without it");

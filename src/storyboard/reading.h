@@ -60,8 +60,16 @@ const Row& rowOf(const Row (&rows)[N], const XoscElement& element, const char* w
   Reading::refuse(element, what);
 }
 
+/// Name of a <Controller>, or of the entry that a <CatalogReference> names: scenario_runner's
+/// property `module` where it has one. Throws InputError.
+std::string readControllerName(const XoscElement& element, const Reading& reading);
 /// Reads the one position inside <Position>. Throws InputError and Unsupported.
 Position readPosition(const XoscElement& parent, const Reading& reading);
+/// Reads the position that stands alone in `holder`. Throws InputError and Unsupported.
+Position readOnlyPosition(const XoscElement& holder, const Reading& reading);
+/// Reads the waypoints of a <Route>, or of the one that a <CatalogReference> names; at least one.
+/// Throws as readPosition.
+std::vector<Position> readWaypoints(const XoscElement& element, const Reading& reading);
 /// Reads one <Action>, <PrivateAction> or <GlobalAction>. Throws InputError; Unsupported where that
 /// must not be ignored.
 Action readAction(const XoscElement& element, Reading& reading);

@@ -27,7 +27,16 @@ struct Source {
 
 /// A position, in the terms in which the file gives it.
 struct Position {
-  enum class Kind { kWorld, kLane, kRoad, kObject, kRelativeWorld, kRelativeLane, kRelativeRoad };
+  enum class Kind {
+    kWorld,
+    kLane,
+    kRoad,
+    kRoute,
+    kObject,
+    kRelativeWorld,
+    kRelativeLane,
+    kRelativeRoad
+  };
 
   Kind kind = Kind::kWorld;
   Source source;
@@ -36,6 +45,7 @@ struct Position {
   std::string entity;                               ///< that a relative position refers to
   std::string road;                                 ///< id of the road
   int lane = 0;                                     ///< id of the lane, or number of lanes beside
+  std::vector<Position> route;                      ///< that s counts along
   double s = 0.0;                                   ///< or ds
   double t = 0.0;                                   ///< t, dt, or offset in the lane
   double heading = 0.0;                             ///< absolute, or relative to the reference
@@ -46,11 +56,11 @@ struct Position {
 /// How a value gets from where it is to its target.
 struct Dynamics {
   enum class Shape { kStep, kLinear, kCubic, kSinusoidal };
-  enum class Dimension { kTime, kDistance, kRate };
+  enum class Dimension { kTime, kDistance, kRate, kAcceleration };
 
   Shape shape = Shape::kStep;
   Dimension dimension = Dimension::kTime;
-  double value = 0.0;  ///< [s], [m], or the target's unit per second
+  double value = 0.0;  ///< [s], [m], or at most the target's unit per second or second squared
 };
 
 /// Places an entity.
@@ -102,6 +112,17 @@ struct FollowTrajectoryAction {
   double offset = 0.0;  ///< [s]
 };
 
+/// How fast a speed changes at most, and how high it gets.
+struct SpeedLimits {
+  double acceleration = 3.0;                               ///< [m/s^2]
+  double deceleration = 3.0;                               ///< [m/s^2]
+  double speed = std::numeric_limits<double>::infinity();  ///< [m/s]
+};
+
+/// On which side of another entity one keeps its distance: that of the start, ahead or to the left
+/// of it, behind or to the right of it.
+enum class Side { kPresent, kAheadOrLeft, kBehindOrRight };
+
 /// Keeps a distance [m] or a time gap [s] behind or ahead of an entity.
 struct DistanceAction {
   std::string entity;
@@ -109,7 +130,36 @@ struct DistanceAction {
   bool time_gap = false;
   bool freespace = false;
   bool continuous = false;
-  double acceleration = 3.0;  ///< at most, both ways [m/s^2]
+  Side side = Side::kPresent;
+  std::optional<SpeedLimits> limits;  ///< nullopt: at once, wherever that is
+};
+
+/// Keeps a distance [m] beside an entity, across the lanes.
+struct LateralDistanceAction {
+  std::string entity;
+  std::optional<double> value;  ///< nullopt: the distance of the start
+  bool freespace = false;
+  bool continuous = false;
+  Side side = Side::kPresent;
+  double speed = std::numeric_limits<double>::infinity();  ///< across the lanes, at most [m/s]
+};
+
+/// Arrives at a place when another entity, the master, arrives at its own. The speed changes at an
+/// even rate, so that the last part of the way is driven with the final speed.
+struct SynchronizeAction {
+  std::string master;
+  Position master_target;
+  Position target;
+  double master_tolerance = 1.0;  ///< [m]
+  double tolerance = 1.0;         ///< [m]
+  std::optional<SpeedAction> final_speed;
+  double steady_distance = 0.0;  ///< length of the last part [m]
+  double steady_time = 0.0;      ///< or how long it takes [s]
+};
+
+/// Changes the speed several times, one after the other.
+struct SpeedProfileAction {
+  std::vector<SpeedAction> parts;
 };
 
 /// Adds an entity at a position, or takes it away.
@@ -140,7 +190,8 @@ struct Action {
   std::string name;
   Source source;
   std::variant<NoAction, TeleportAction, SpeedAction, LaneChangeAction, LaneOffsetAction,
-               RouteAction, FollowTrajectoryAction, DistanceAction, EntityAction, ParameterAction,
+               RouteAction, FollowTrajectoryAction, DistanceAction, LateralDistanceAction,
+               SynchronizeAction, SpeedProfileAction, EntityAction, ParameterAction,
                ControllerAction>
       what;
 };
@@ -183,6 +234,8 @@ struct EntityCondition {
     kDistance,
     kHeadway,
     kTimeToCollision,
+    kEndOfRoad,
+    kOffroad,
     kCollision
   };
   enum class Along { kStraight, kLongitudinal, kLateral };
@@ -258,8 +311,11 @@ struct Story {
 
 /// A vehicle, pedestrian or object. Its reference point is the rear axle of a vehicle.
 struct Entity {
+  enum class Kind { kVehicle, kBicycle, kPedestrian, kObject };
+
   std::string name;
   Source source;
+  Kind kind = Kind::kVehicle;
   traffic::VehicleDimensions dimensions;
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< of the box, from the reference point [m]
   std::string controller;  ///< name of its controller; empty where it has none

@@ -35,10 +35,27 @@ void readBox(const XoscElement& body, Entity& entity) {
   if (least <= 0.0 || most > 100.0) size.fail("expected lengths above 0 and up to 100 m");
 }
 
+Entity::Kind readKind(const XoscElement& body) {
+  if (body.name() == "Pedestrian") return Entity::Kind::kPedestrian;
+  if (body.name() == "MiscObject") return Entity::Kind::kObject;
+  if (body.name() != "Vehicle") Reading::refuse(body, "this kind of entity");
+  const bool bicycle = body.text("vehicleCategory", "car") == "bicycle";
+  return bicycle ? Entity::Kind::kBicycle : Entity::Kind::kVehicle;
+}
+
+/// CARLA goes by the model and not by the box of the file, which often is that of a car.
+void takeUsualSize(Entity& entity) {
+  if (entity.kind != Entity::Kind::kBicycle && entity.kind != Entity::Kind::kPedestrian) return;
+  const bool bicycle = entity.kind == Entity::Kind::kBicycle;
+  entity.dimensions = bicycle ? traffic::VehicleDimensions{1.7, 0.6, 1.7}
+                              : traffic::VehicleDimensions{0.5, 0.6, 1.8};
+  entity.center = Eigen::Vector2d::Zero();
+}
+
 std::string controllerOf(const XoscElement& object, const Reading& reading) {
   const auto holder = object.find("ObjectController");
   if (!holder || holder->children().empty()) return {};
-  return reading.catalogs.resolve(holder->only()).text("name");
+  return readControllerName(holder->only(), reading);
 }
 
 Entity readEntity(const XoscElement& object, Reading& reading) {
@@ -48,9 +65,9 @@ Entity readEntity(const XoscElement& object, Reading& reading) {
   for (const XoscElement& child : object.children()) {
     if (child.name() == "ObjectController") continue;
     const XoscElement body = reading.catalogs.resolve(child);
-    if (body.name() != "Vehicle" && body.name() != "Pedestrian" && body.name() != "MiscObject")
-      Reading::refuse(body, "this kind of entity");
+    entity.kind = readKind(body);
     readBox(body, entity);
+    if (reading.carla) takeUsualSize(entity);
     entity.controller = controllerOf(object, reading);
     return entity;
   }
@@ -191,7 +208,10 @@ class NameCheck {
     throw core::InputError(source.text() + ": there is no entity '" + entity +
                            "'; expected one of {" + core::joinText(known, ", ") + "}");
   }
-  void checkPlace(const Position& position) const { require(position.entity, position.source); }
+  void checkPlace(const Position& position) const {
+    require(position.entity, position.source);
+    for (const Position& waypoint : position.route) checkPlace(waypoint);
+  }
   void checkAct(const Act& act) const {
     if (act.start) checkTrigger(*act.start);
     if (act.stop) checkTrigger(*act.stop);
@@ -213,6 +233,12 @@ class NameCheck {
     if (const auto* lane = std::get_if<LaneChangeAction>(&what))
       require(lane->entity, action.source);
     if (const auto* gap = std::get_if<DistanceAction>(&what)) require(gap->entity, action.source);
+    if (const auto* gap = std::get_if<LateralDistanceAction>(&what))
+      require(gap->entity, action.source);
+    if (const auto* meeting = std::get_if<SynchronizeAction>(&what)) {
+      require(meeting->master, action.source);
+      for (const Position* place : {&meeting->master_target, &meeting->target}) checkPlace(*place);
+    }
     if (const auto* entity = std::get_if<EntityAction>(&what)) {
       require(entity->entity, action.source);
       if (entity->place) checkPlace(*entity->place);

@@ -17,6 +17,16 @@ using Along = EntityCondition::Along;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
+constexpr SpeedLimits kUsualLimits{10.0, 10.0};
+
+/// The speed [m/s] with which a change to the last one at an even rate covers a distance [m] in a
+/// time [s]; without a last one the speed stays.
+double speedToArrive(double meters, double seconds, std::optional<double> last) {
+  if (meters <= 0.0 || seconds <= 0.0) return last.value_or(kUsualLimits.speed);
+  const double mean = meters / seconds;
+  return last ? std::max(0.0, 2.0 * mean - *last) : mean;
+}
+
 template <class Value>
 bool compare(Rule rule, const Value& left, const Value& right) {
   switch (rule) {
@@ -192,6 +202,10 @@ bool TrafficStage::measured(const EntityCondition& condition, const std::string&
       return own.state.speed > 1e-3 && holds(distance(condition, entity) / own.state.speed);
     case Measure::kTimeToCollision:
       return holds(timeToCollision(condition, entity));
+    case Measure::kEndOfRoad:
+      return own.at_the_end > 0.0 && holds(own.at_the_end);
+    case Measure::kOffroad:
+      return own.off_road > 0.0 && holds(own.off_road);
     case Measure::kCollision:
       break;
   }
@@ -247,45 +261,128 @@ void TrafficStage::performGlobal(const Action& action) {
   }
 }
 
+/// The speed that the action wants where it relates to that of `entity` [m/s].
+double TrafficStage::speedFrom(const SpeedAction& action, const std::string& entity) const {
+  const double other = member(entity).state.speed;
+  return std::max(0.0, action.factor ? other * action.value : other + action.value);
+}
+
 void TrafficStage::perform(const SpeedAction& action, Actor& actor,
                            const Actor::Performing& performing) {
   if (action.entity.empty()) return actor.setSpeed(action.dynamics, action.value, performing);
-  const auto wanted = [this, action] {
-    const double other = member(action.entity).state.speed;
-    return std::max(0.0, action.factor ? other * action.value : other + action.value);
-  };
+  const auto wanted = [this, action] { return speedFrom(action, action.entity); };
   if (!action.continuous) return actor.setSpeed(action.dynamics, wanted(), performing);
-  constexpr double kUsual = 10.0;  // [m/s^2]
   const bool rate = action.dynamics.dimension == Dynamics::Dimension::kRate;
-  actor.adaptSpeed(wanted, rate ? action.dynamics.value : kUsual, nullptr, performing);
+  SpeedLimits limits = kUsualLimits;
+  if (rate) limits.acceleration = limits.deceleration = action.dynamics.value;
+  actor.adaptSpeed(wanted, limits, nullptr, performing);
+}
+
+void TrafficStage::perform(const SpeedProfileAction& action, Actor& actor,
+                           const Actor::Performing& performing) {
+  std::deque<std::pair<Dynamics, double>> targets;
+  for (const SpeedAction& part : action.parts) targets.emplace_back(part.dynamics, part.value);
+  actor.setSpeeds(std::move(targets), performing);
+}
+
+/// How far the entity is behind the place where its distance is the wanted one [m].
+double TrafficStage::excess(const DistanceAction& action, const std::string& entity,
+                            Side side) const {
+  EntityCondition gap;
+  gap.other = action.entity;
+  gap.along = Along::kLongitudinal;
+  const double between = distance(gap, entity);
+  gap.freespace = action.freespace;
+  const double lengths = between - distance(gap, entity);
+  const Member& other = member(action.entity);
+  const bool ahead = member(entity).reference.pose.toBody(other.reference.pose.position).x() <= 0.0;
+  const bool to_be_ahead = side == Side::kPresent ? ahead : side == Side::kAheadOrLeft;
+  const double speed = to_be_ahead ? other.state.speed : member(entity).state.speed;
+  const double target = lengths + (action.time_gap ? action.value * speed : action.value);
+  return (to_be_ahead ? target : -target) - (ahead ? between : -between);
 }
 
 void TrafficStage::perform(const DistanceAction& action, Actor& actor,
                            const Actor::Performing& performing) {
   constexpr double kGain = 0.4;  // [1/s]
-  EntityCondition gap;
-  gap.other = action.entity;
-  gap.freespace = action.freespace;
-  gap.along = Along::kLongitudinal;
   const std::string self = actor.entity().name;
-  const auto excess = [this, gap, action, self] {  // of the distance [m]
-    const double target = action.time_gap ? action.value * member(self).state.speed : action.value;
-    return distance(gap, self) - target;
-  };
-  const auto wanted = [this, excess, action, self] {
-    const Member& other = member(action.entity);
-    const bool behind = member(self).reference.pose.toBody(other.reference.pose.position).x() > 0.0;
-    return std::max(0.0, other.state.speed + kGain * excess() * (behind ? 1.0 : -1.0));
+  if (!action.limits) actor.shift(excess(action, self, action.side));
+  if (!action.limits && !action.continuous) {
+    performing->over = true;
+    return;
+  }
+  const auto wanted = [this, action, self] {
+    return member(action.entity).state.speed + kGain * excess(action, self, action.side);
   };
   std::function<bool()> reached;
   if (!action.continuous) {
-    reached = [this, excess, action, self] {
+    reached = [this, action, self] {
       constexpr double kNear = 0.1;  // [m] and [m/s]
       const double closing = member(self).state.speed - member(action.entity).state.speed;
-      return std::abs(excess()) < kNear && std::abs(closing) < kNear;
+      return std::abs(excess(action, self, action.side)) < kNear && std::abs(closing) < kNear;
     };
   }
-  actor.adaptSpeed(wanted, action.acceleration, reached, performing);
+  actor.adaptSpeed(wanted, action.limits.value_or(kUsualLimits), reached, performing);
+}
+
+void TrafficStage::perform(const LateralDistanceAction& action, Actor& actor,
+                           const Actor::Performing& performing) {
+  const std::string self = actor.entity().name;
+  const auto offsetOf = [this, self](const std::string& entity) {  // from the own lane [m]
+    const map::Route* const route = routeOf(self);
+    if (route == nullptr) return 0.0;
+    return route->path().project(member(entity).reference.pose.position).lateral_offset;
+  };
+  const double between = offsetOf(self) - offsetOf(action.entity);
+  const bool left =
+      action.side == Side::kPresent ? between >= 0.0 : action.side == Side::kAheadOrLeft;
+  const double widths =
+      0.5 * (member(self).dimensions.width + member(action.entity).dimensions.width);
+  const double target =
+      action.value ? *action.value + (action.freespace ? widths : 0.0) : std::abs(between);
+  const auto wanted = [offsetOf, action, target, left] {
+    return offsetOf(action.entity) + (left ? target : -target);
+  };
+  actor.adaptOffset(wanted, action.speed, action.continuous, performing);
+}
+
+/// How far an entity has to go to a point [m]: along the line that it follows, where that leads
+/// there, else straight on. Negative where it has passed the point.
+double TrafficStage::distanceLeft(const std::string& entity, const Eigen::Vector2d& target) const {
+  constexpr double kBeside = 5.0;  // [m]
+  const Member& own = member(entity);
+  const map::Route* const route = routeOf(entity);
+  const geometry::Polyline* path = planned_.count(entity) == 0 ? own.actor->path() : nullptr;
+  if (path == nullptr && route != nullptr) path = &route->path();
+  if (path != nullptr) {
+    const geometry::Projection there = path->project(target);
+    if (std::abs(there.lateral_offset) < kBeside)
+      return there.arc_length - path->project(own.reference.pose.position).arc_length;
+  }
+  const double straight = (target - own.reference.pose.position).norm();
+  return std::copysign(straight, own.reference.pose.toBody(target).x());
+}
+
+void TrafficStage::perform(const SynchronizeAction& action, Actor& actor,
+                           const Actor::Performing& performing) {
+  const std::string self = actor.entity().name;
+  const Eigen::Vector2d target = places_.resolve(action.target, pose_of_).pose.position;
+  const Eigen::Vector2d meeting = places_.resolve(action.master_target, pose_of_).pose.position;
+  const auto wanted = [this, action, self, target, meeting] {
+    const double master_speed = std::max(1e-3, member(action.master).state.speed);
+    const double seconds = distanceLeft(action.master, meeting) / master_speed;
+    const double meters = distanceLeft(self, target);
+    if (!action.final_speed) return speedToArrive(meters, seconds, std::nullopt);
+    const SpeedAction& last = *action.final_speed;
+    const double speed = last.continuous ? speedFrom(last, action.master) : last.value;
+    const double steady = std::max(action.steady_distance, action.steady_time * speed);
+    return speedToArrive(meters - steady, seconds - steady / std::max(1e-3, speed), speed);
+  };
+  const auto reached = [this, action, self, target, meeting] {
+    return distanceLeft(self, target) <= action.tolerance ||
+           distanceLeft(action.master, meeting) <= action.master_tolerance;
+  };
+  actor.adaptSpeed(wanted, kUsualLimits, reached, performing);
 }
 
 void TrafficStage::perform(const LaneChangeAction& action, Actor& actor,
@@ -297,13 +394,13 @@ void TrafficStage::perform(const LaneChangeAction& action, Actor& actor,
   actor.changeLane(action.dynamics, target(0.0), target(action.offset), performing);
 }
 
-void TrafficStage::perform(const FollowTrajectoryAction& action, double time, Actor& actor,
+void TrafficStage::perform(const FollowTrajectoryAction& action, Actor& actor,
                            const Actor::Performing& performing) {
   std::vector<MapPose> places;
   std::vector<double> times;
   for (const TrajectoryVertex& vertex : action.vertices) {
     places.push_back(places_.resolve(vertex.position, pose_of_));
-    const double from = action.absolute ? 0.0 : time;
+    const double from = action.absolute ? 0.0 : now_;
     if (action.timed) times.push_back(from + vertex.time * action.scale + action.offset);
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -315,41 +412,38 @@ void TrafficStage::perform(const FollowTrajectoryAction& action, double time, Ac
   actor.follow(std::move(places), std::move(times), performing);
 }
 
-void TrafficStage::perform(const RouteAction& action, Actor& actor) {
+void TrafficStage::perform(const RouteAction& action, Actor& actor,
+                           const Actor::Performing& performing) {
   std::vector<Eigen::Vector3d> points;
   for (const Position& waypoint : action.waypoints) {
     const MapPose place = places_.resolve(waypoint, pose_of_);
     points.emplace_back(place.pose.position.x(), place.pose.position.y(), place.elevation);
   }
   actor.setRoute(places_.routeThrough(actor.reference(), std::move(points)));
+  performing->over = true;
 }
 
-void TrafficStage::perform(const Action& action, const std::string& entity, double time,
+void TrafficStage::perform(const LaneOffsetAction& action, Actor& actor,
                            const Actor::Performing& performing) {
-  const auto& what = action.what;
-  if (const auto* teleport = std::get_if<TeleportAction>(&what)) place(entity, teleport->to);
+  actor.setOffset(action.dynamics, action.value, performing);
+}
+
+void TrafficStage::perform(const Action& action, const std::string& entity,
+                           const Actor::Performing& performing) {
+  if (const auto* teleport = std::get_if<TeleportAction>(&action.what)) place(entity, teleport->to);
   if (!present(entity)) {
     performing->over = true;
     return;
   }
   Actor& actor = *actors_.at(entity).actor;
-  if (const auto* speed = std::get_if<SpeedAction>(&what))
-    return perform(*speed, actor, performing);
-  if (const auto* lane = std::get_if<LaneChangeAction>(&what))
-    return perform(*lane, actor, performing);
-  if (const auto* beside = std::get_if<LaneOffsetAction>(&what))
-    return actor.setOffset(beside->dynamics, beside->value, performing);
-  if (const auto* course = std::get_if<FollowTrajectoryAction>(&what))
-    return perform(*course, time, actor, performing);
-  if (const auto* gap = std::get_if<DistanceAction>(&what)) return perform(*gap, actor, performing);
-  if (const auto* route = std::get_if<RouteAction>(&what)) perform(*route, actor);
-  performing->over = true;
+  std::visit([&](const auto& what) { perform(what, actor, performing); }, action.what);
 }
 
 std::vector<std::shared_ptr<Performance>> TrafficStage::begin(
     const Action& action, const std::vector<std::string>& actors, double time) {
+  now_ = time;
   try {
-    return start(action, actors, time);
+    return start(action, actors);
   } catch (const core::InputError& error) {
     const std::string text = error.what();
     const bool placed = text.rfind(action.source.file + ":", 0) == 0;
@@ -358,7 +452,7 @@ std::vector<std::shared_ptr<Performance>> TrafficStage::begin(
 }
 
 std::vector<std::shared_ptr<Performance>> TrafficStage::start(
-    const Action& action, const std::vector<std::string>& actors, double time) {
+    const Action& action, const std::vector<std::string>& actors) {
   const bool global = std::holds_alternative<EntityAction>(action.what) ||
                       std::holds_alternative<ParameterAction>(action.what) ||
                       std::holds_alternative<NoAction>(action.what);
@@ -370,7 +464,7 @@ std::vector<std::shared_ptr<Performance>> TrafficStage::start(
     if (planned_.count(entity) != 0) {
       performances.back()->over = true;
     } else {
-      perform(action, entity, time, performances.back());
+      perform(action, entity, performances.back());
       Member& own = actors_.at(entity);
       own.reference = own.actor->reference();
       own.state = own.actor->state();
@@ -384,7 +478,10 @@ std::vector<std::shared_ptr<Performance>> TrafficStage::start(
 void TrafficStage::measure(Member& known, const traffic::VehicleState& before, double step) const {
   known.acceleration = (known.state.speed - before.speed) / step;
   known.traveled += (known.state.position - before.position).norm();
-  known.standing = known.state.speed < 0.05 ? known.standing + step : 0.0;
+  const auto count = [step](double& seconds, bool more) { seconds = more ? seconds + step : 0.0; };
+  count(known.standing, known.state.speed < 0.05);
+  count(known.off_road, !places_.isOnLane(known.reference));
+  count(known.at_the_end, places_.isEndOfRoad(known.reference));
 }
 
 void TrafficStage::observe(const std::string& entity, const traffic::VehicleState& state,

@@ -57,8 +57,10 @@ class TrafficStage : public Stage {
     traffic::VehicleState state;
     MapPose reference;
     double acceleration = 0.0;
-    double traveled = 0.0;  ///< [m]
-    double standing = 0.0;  ///< [s]
+    double traveled = 0.0;    ///< [m]
+    double standing = 0.0;    ///< [s]
+    double off_road = 0.0;    ///< [s]
+    double at_the_end = 0.0;  ///< of its road [s]
     const map::Route* planned_route = nullptr;
   };
   const Member& member(const std::string& entity) const { return actors_.at(entity); }
@@ -71,25 +73,38 @@ class TrafficStage : public Stage {
   double alongDistance(const EntityCondition& condition, const std::string& entity,
                        const Eigen::Vector2d& target) const;
   double timeToCollision(const EntityCondition& condition, const std::string& entity) const;
+  double distanceLeft(const std::string& entity, const Eigen::Vector2d& target) const;
+  double speedFrom(const SpeedAction& action, const std::string& entity) const;
   Eigen::Vector2d velocityOf(const std::string& entity) const;
   bool touch(const std::string& first, const std::string& second) const;
   bool collides(const EntityCondition& condition, const std::string& entity) const;
   std::vector<std::shared_ptr<Performance>> start(const Action& action,
-                                                  const std::vector<std::string>& actors,
-                                                  double time);
-  void perform(const Action& action, const std::string& entity, double time,
+                                                  const std::vector<std::string>& actors);
+  void perform(const Action& action, const std::string& entity,
                const std::shared_ptr<Performance>& performing);
+  /// Every other action has its effect at once.
+  template <class Other>
+  void perform(const Other&, Actor&, const Actor::Performing& performing) {
+    performing->over = true;
+  }
   void perform(const SpeedAction& action, Actor& actor, const Actor::Performing& performing);
   void perform(const DistanceAction& action, Actor& actor, const Actor::Performing& performing);
-  void perform(const LaneChangeAction& action, Actor& actor, const Actor::Performing& performing);
-  void perform(const FollowTrajectoryAction& action, double time, Actor& actor,
+  double excess(const DistanceAction& action, const std::string& entity, Side side) const;
+  void perform(const LateralDistanceAction& action, Actor& actor,
                const Actor::Performing& performing);
-  void perform(const RouteAction& action, Actor& actor);
+  void perform(const SynchronizeAction& action, Actor& actor, const Actor::Performing& performing);
+  void perform(const SpeedProfileAction& action, Actor& actor, const Actor::Performing& performing);
+  void perform(const LaneChangeAction& action, Actor& actor, const Actor::Performing& performing);
+  void perform(const LaneOffsetAction& action, Actor& actor, const Actor::Performing& performing);
+  void perform(const FollowTrajectoryAction& action, Actor& actor,
+               const Actor::Performing& performing);
+  void perform(const RouteAction& action, Actor& actor, const Actor::Performing& performing);
   void performGlobal(const Action& action);
   void place(const std::string& entity, const Position& position);
   void change(const ParameterAction& action);
   void measure(Member& member, const traffic::VehicleState& before, double step) const;
 
+  double now_ = 0.0;  ///< when the action starts that is being started [s]
   const Scenario& scenario_;
   const Places& places_;
   Places::PoseOf pose_of_;

@@ -103,8 +103,8 @@ int XoscElement::integer(const char* key, int missing) const {
 bool XoscElement::flag(const char* key, bool missing) const {
   if (!has(key)) return missing;
   const std::string value = text(key);
-  if (value == "true" || value == "1") return true;
-  if (value == "false" || value == "0") return false;
+  if (value == "true" || value == "True" || value == "1") return true;
+  if (value == "false" || value == "False" || value == "0") return false;
   fail(std::string("'") + key + "' is '" + core::shortened(value) + "'; expected true or false");
 }
 

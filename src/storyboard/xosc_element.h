@@ -29,12 +29,15 @@ class XoscElement {
   /// Value of an attribute; without a default it must be there.
   std::string text(const char* key) const;
   std::string text(const char* key, const std::string& missing) const;
+  /// The attribute as it stands in the file, empty where it is missing: a label that nobody refers
+  /// to, which may hold no expression of ours.
+  std::string plainText(const char* key) const { return node_.attribute(key).value(); }
   /// A finite number.
   double number(const char* key) const;
   double number(const char* key, double missing) const;
   int integer(const char* key) const;
   int integer(const char* key, int missing) const;
-  /// true or false, also as 1 and 0.
+  /// true or false, also as True and False, 1 and 0.
   bool flag(const char* key, bool missing) const;
   bool has(const char* key) const { return !node_.attribute(key).empty(); }
   /// One of these words, as its index.

@@ -83,15 +83,39 @@ TEST_F(OpenScenario, AControllersNameMakesAVehicleACbv) {
   }));
 }
 
+TEST_F(OpenScenario, TheEgoBrakesForThePedestrian) {
+  fs::copy(path("files/crossing_pedestrian.xosc"), path("files/cut_in.xosc"),
+           fs::copy_options::overwrite_existing);
+  ASSERT_EQ(drive("braked"), kPassed) << output();
+  EXPECT_EQ(summary("braked").at("ego").at("collisions"), 0);
+  const std::vector<TraceRow> ego = rows("braked", "ego");
+  const auto slowest = std::min_element(
+      ego.begin(), ego.end(),
+      [](const TraceRow& left, const TraceRow& right) { return left.speed < right.speed; });
+  EXPECT_LT(slowest->speed, 4.0);             // 8 m/s before it
+  EXPECT_LT(slowest->position.x(), 150.0);    // ahead of the pedestrian
+  EXPECT_GT(ego.back().position.x(), 160.0);  // and then goes on
+  EXPECT_EQ(rows("braked", "bin").back().position.x(), 120.0);
+  EXPECT_GT(rows("braked", "walker").back().position.y(), 0.0);
+}
+
+TEST_F(OpenScenario, AContactWithThePedestrianCounts) {
+  fs::copy(path("files/crossing_pedestrian.xosc"), path("files/cut_in.xosc"),
+           fs::copy_options::overwrite_existing);
+  change("value=\"1.4\"", "value=\"1\"");  // so that it is in the lane when the ego is there
+  EXPECT_EQ(drive("hit", {"--ego-planner", "constant"}), 1) << output();
+  EXPECT_EQ(summary("hit").at("ego").at("collisions"), 1);
+}
+
 TEST_F(OpenScenario, WhatIsNotSupportedIsRefusedOrListedInTheSummary) {
-  change("<LaneChangeAction>", "<SpeedProfileAction>");
-  change("</LaneChangeAction>", "</SpeedProfileAction>");
+  change("<LaneChangeAction>", "<TrailerAction>");
+  change("</LaneChangeAction>", "</TrailerAction>");
   EXPECT_EQ(drive("refused"), kBadInput);
-  expectOutput("cut_in.xosc:84: <SpeedProfileAction>: this action is not supported");
+  expectOutput("cut_in.xosc:84: <TrailerAction>: this action is not supported");
   EXPECT_FALSE(fs::exists(path("refused")));
   ASSERT_EQ(drive("ignored", {"--ignore-unsupported"}), kPassed) << output();
   const std::string faults = summary("ignored").at("faults").dump();
-  EXPECT_NE(faults.find("SpeedProfileAction"), std::string::npos) << faults;
+  EXPECT_NE(faults.find("TrailerAction"), std::string::npos) << faults;
 }
 
 TEST_F(OpenScenario, ARoadThatIsNotThereIsBadInput) {

@@ -69,6 +69,16 @@ TEST_F(StoryboardScenario, ControllersNamedLikePlannersMakeCbvs) {
   EXPECT_EQ(options.max_cbv, 1);
 }
 
+TEST_F(StoryboardScenario, OnlyMotorVehiclesAreCbvs) {
+  std::string bicycle = kOvertaker;
+  bicycle.replace(bicycle.find("\"car\""), 5, "\"bicycle\"");
+  change(kOvertaker,
+         bicycle + "<ObjectController><Controller name=\"pdm_lite\"/></ObjectController>");
+  EXPECT_NE(error().find("'overtaker' has the controller 'pdm_lite'; expected a car"),
+            std::string::npos)
+      << error();
+}
+
 TEST_F(StoryboardScenario, AStartSpeedThatNoPlannerDrivesIsRefused) {
   change("parameterType=\"double\" value=\"10\"", "parameterType=\"double\" value=\"410\"");
   EXPECT_NE(error().find("m/s; expected 0 to 40 m/s"), std::string::npos) << error();
@@ -120,14 +130,46 @@ TEST_F(StoryboardScenario, WithoutAnExternalControllerTheEgoIsFoundByItsName) {
   EXPECT_NE(error().find("cut_in.xosc:18: no entity is the ego"), std::string::npos) << error();
 }
 
+std::string criterion(const std::string& name, const std::string& parameter,
+                      const std::string& value) {
+  return kStop + ("<Condition name=\"" + name) +
+         "\" delay=\"0\" conditionEdge=\"rising\"><ByValueCondition><ParameterCondition "
+         "parameterRef=\"" +
+         parameter + "\" value=\"" + value +
+         "\" rule=\"lessThan\"/></ByValueCondition></Condition></ConditionGroup><ConditionGroup>";
+}
+
 TEST_F(StoryboardScenario, CriteriaOfTheStopTriggerBecomeRules) {
-  const std::string criterion =
-      "<Condition name=\"c\" delay=\"0\" conditionEdge=\"rising\"><ByValueCondition>"
-      "<ParameterCondition parameterRef=\"criteria_CollisionTest\" value=\"\" rule=\"lessThan\"/>"
-      "</ByValueCondition></Condition>";
   EXPECT_GT(options().verdict.maximum_ego_collisions, 0.0);
-  change(kStop, kStop + criterion + "</ConditionGroup><ConditionGroup>");
+  change(kStop, criterion("c", "criteria_CollisionTest", ""));
   EXPECT_EQ(options().verdict.maximum_ego_collisions, 0.0);
+}
+
+// The examples of scenario_runner give the condition the criterion's name, and no parameter.
+TEST_F(StoryboardScenario, ACriterionMayBeTheNameOfTheCondition) {
+  change(kStop, criterion("criteria_RunningRedLightTest", "", ""));
+  EXPECT_EQ(options().verdict.maximum_red_lights, 0.0);
+  EXPECT_GT(options().verdict.maximum_ego_collisions, 0.0);
+}
+
+TEST_F(StoryboardScenario, TheDistanceToDriveIsARule) {
+  change(kStop, criterion("criteria_DrivenDistanceTest", "distance_success", "100"));
+  EXPECT_EQ(options().verdict.minimum_ego_distance, 100.0);
+}
+
+TEST_F(StoryboardScenario, ADistanceToDriveThatIsNoneIsRefused) {
+  change(kStop, criterion("criteria_DrivenDistanceTest", "distance_success", "far"));
+  EXPECT_NE(error().find("'criteria_DrivenDistanceTest' has the value 'far'; expected a distance"),
+            std::string::npos)
+      << error();
+}
+
+TEST_F(StoryboardScenario, ThePropertyModuleNamesTheController) {
+  change(kOvertaker, std::string(kOvertaker) +
+                         "<ObjectController><Controller name=\"agent\"><Properties><Property "
+                         "name=\"module\" value=\"pdm_lite\"/></Properties></Controller>"
+                         "</ObjectController>");
+  EXPECT_EQ(options().cbv_planner, "pdm_lite");
 }
 
 TEST_F(StoryboardScenario, NamesThatAreNoIdsOfVehiclesAreRefused) {

@@ -71,6 +71,41 @@ TEST_F(StoryboardActor, ALaneChangeIsHalfDoneInHalfItsTime) {
   EXPECT_NEAR(actor_.reference().pose.heading, 0.0, 1e-6);
 }
 
+// A rate is the largest one of a change: of a cosine over 3.5 m at 1.75 m/s after pi / 2 * 2 s.
+TEST_F(StoryboardActor, ARateIsTheLargestOfAChange) {
+  actor_.setSpeed({}, 10.0, std::make_shared<Performance>());
+  const auto performing = std::make_shared<Performance>();
+  actor_.changeLane(over(Dynamics::Shape::kSinusoidal, Dynamics::Dimension::kRate, 1.75),
+                    {10.0, -1.75}, {10.0, -1.75}, performing);
+  drive(3.1);
+  EXPECT_FALSE(performing->over);
+  drive(0.1);
+  EXPECT_TRUE(performing->over);
+}
+
+// The curvature of a cosine over 1.5 m in T is 1.5 / 2 * (pi / T)^2: for 0.3 m/s^2, T = 4.97 s.
+TEST_F(StoryboardActor, AnOffsetTakesTheTimeOfItsLargestAcceleration) {
+  actor_.setSpeed({}, 10.0, std::make_shared<Performance>());
+  const auto performing = std::make_shared<Performance>();
+  actor_.setOffset(over(Dynamics::Shape::kSinusoidal, Dynamics::Dimension::kAcceleration, 0.3), 1.5,
+                   performing);
+  drive(4.9);
+  EXPECT_FALSE(performing->over);
+  drive(0.1);
+  EXPECT_TRUE(performing->over);
+}
+
+TEST_F(StoryboardActor, AStepThatLastsTakesEffectAtOnce) {
+  const auto performing = std::make_shared<Performance>();
+  actor_.setSpeed(over(Dynamics::Shape::kStep, Dynamics::Dimension::kDistance, 3.0), 2.0,
+                  performing);
+  EXPECT_EQ(actor_.speed(), 2.0);
+  drive(1.4);
+  EXPECT_FALSE(performing->over);
+  drive(0.1);
+  EXPECT_TRUE(performing->over);  // 3 m at 2 m/s
+}
+
 TEST_F(StoryboardActor, ATimedTrajectoryIsMetAtItsTimes) {
   const auto performing = std::make_shared<Performance>();
   actor_.follow({{{{10.0, -5.25}, 0.0}, 0.0}, {{{20.0, -4.0}, 0.2}, 0.0}}, {0.0, 2.0}, performing);

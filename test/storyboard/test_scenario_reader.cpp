@@ -73,6 +73,132 @@ TEST_F(ScenarioReader, ReadsEntitiesActionsAndExpressions) {
   EXPECT_EQ(read.parameters.at("v"), "4");
 }
 
+TEST_F(ScenarioReader, InFilesOfCarlaStepsLastAndEdgesDoNotCount) {
+  const std::string file = scenario(
+      privateAction("<LongitudinalAction><SpeedAction><SpeedActionDynamics dynamicsShape=\"step\" "
+                    "dynamicsDimension=\"distance\" value=\"1.5\"/><SpeedActionTarget>"
+                    "<AbsoluteTargetSpeed value=\"2\"/></SpeedActionTarget></SpeedAction>"
+                    "</LongitudinalAction>"),
+      "", "",
+      "<StopTrigger><ConditionGroup><Condition name=\"c\" delay=\"0\" conditionEdge=\"rising\">"
+      "<ByValueCondition><SimulationTimeCondition value=\"1\" rule=\"greaterThan\"/>"
+      "</ByValueCondition></Condition></ConditionGroup></StopTrigger>");
+  const auto dynamics = [](const Scenario& read) {
+    return std::get<SpeedAction>(read.init.front().action.what).dynamics;
+  };
+  const auto edge = [](const Scenario& read) { return read.stop->groups.front().front().edge; };
+  const Scenario plain = readScenario(file, false);
+  EXPECT_EQ(dynamics(plain).value, 0.0);
+  EXPECT_EQ(edge(plain), Condition::Edge::kRising);
+  std::string text = core::readFile(file, "scenario");
+  const std::string description = "description=\"test";
+  text.replace(text.find(description), description.size(), "description=\"CARLA:test");
+  const Scenario carla = readScenario(write("carla.xosc", text), false);
+  EXPECT_EQ(dynamics(carla).value, 1.5);
+  EXPECT_EQ(dynamics(carla).dimension, Dynamics::Dimension::kDistance);
+  EXPECT_EQ(edge(carla), Condition::Edge::kNone);
+}
+
+TEST_F(ScenarioReader, KnowsWhoIsNoMotorVehicle) {
+  const std::string others =
+      "<ScenarioObject name=\"b\"><Vehicle name=\"b\" vehicleCategory=\"bicycle\">" +
+      std::string(kBox) +
+      "</Vehicle></ScenarioObject><ScenarioObject name=\"p\"><Pedestrian name=\"p\">" + kBox +
+      "</Pedestrian></ScenarioObject><ScenarioObject name=\"o\"><MiscObject name=\"o\">" + kBox +
+      "</MiscObject></ScenarioObject>";
+  const std::string file = scenario("", "", others);
+  const Scenario read = readScenario(file, false);
+  EXPECT_EQ(read.find("Ego")->kind, Entity::Kind::kVehicle);
+  EXPECT_EQ(read.find("b")->kind, Entity::Kind::kBicycle);
+  EXPECT_EQ(read.find("p")->kind, Entity::Kind::kPedestrian);
+  EXPECT_EQ(read.find("o")->kind, Entity::Kind::kObject);
+  EXPECT_EQ(read.find("p")->dimensions.length, 4.0);
+  std::string text = core::readFile(file, "scenario");
+  const std::string description = "description=\"test";
+  text.replace(text.find(description), description.size(), "description=\"CARLA:test");
+  const Scenario carla = readScenario(write("carla.xosc", text), false);
+  EXPECT_EQ(carla.find("p")->dimensions.length, 0.5);  // not the car's box that the file gives
+  EXPECT_EQ(carla.find("b")->dimensions.width, 0.6);
+  EXPECT_EQ(carla.find("Ego")->dimensions.length, 4.0);
+}
+
+TEST_F(ScenarioReader, ReadsTheActionsOnSeveralEntities) {
+  const auto read = [&](const std::string& inside) {
+    return readScenario(scenario(privateAction(inside)), false).init.front().action.what;
+  };
+  const std::string place = "<WorldPosition x=\"1\" y=\"2\"/>";
+  const auto meeting = std::get<SynchronizeAction>(
+      read("<SynchronizeAction masterEntityRef=\"Ego\" targetTolerance=\"2\">"
+           "<TargetPositionMaster>" +
+           place + "</TargetPositionMaster><TargetPosition>" + place +
+           "</TargetPosition><FinalSpeed><AbsoluteSpeed value=\"3\"><TargetDistanceSteadyState "
+           "distance=\"5\"/></AbsoluteSpeed></FinalSpeed></SynchronizeAction>"));
+  EXPECT_EQ(meeting.target.point.y(), 2.0);
+  EXPECT_EQ(meeting.tolerance, 2.0);
+  EXPECT_EQ(meeting.final_speed->value, 3.0);
+  EXPECT_EQ(meeting.steady_distance, 5.0);
+  const auto gap = std::get<DistanceAction>(
+      read("<LongitudinalAction><LongitudinalDistanceAction entityRef=\"Ego\" distance=\"7\" "
+           "displacement=\"leadingReferencedEntity\"><DynamicConstraints maxAcceleration=\"2\" "
+           "maxSpeed=\"9\"/></LongitudinalDistanceAction></LongitudinalAction>"));
+  EXPECT_EQ(gap.side, Side::kAheadOrLeft);
+  EXPECT_EQ(gap.limits->deceleration, 2.0);  // as of the acceleration where none is given
+  EXPECT_EQ(gap.limits->speed, 9.0);
+  const auto beside = std::get<LateralDistanceAction>(
+      read("<LateralAction><LateralDistanceAction entityRef=\"Ego\" continuous=\"True\" "
+           "displacement=\"rightToReferencedEntity\"/></LateralAction>"));
+  EXPECT_EQ(beside.side, Side::kBehindOrRight);
+  EXPECT_TRUE(beside.continuous);
+  EXPECT_FALSE(beside.value);
+  const auto profile = std::get<SpeedProfileAction>(
+      read("<LongitudinalAction><SpeedProfileAction><SpeedProfileEntry speed=\"3\" time=\"2\"/>"
+           "<SpeedProfileEntry speed=\"1\"/></SpeedProfileAction></LongitudinalAction>"));
+  ASSERT_EQ(profile.parts.size(), 2U);
+  EXPECT_EQ(profile.parts[0].dynamics.dimension, Dynamics::Dimension::kTime);
+  EXPECT_EQ(profile.parts[1].dynamics.dimension, Dynamics::Dimension::kRate);
+}
+
+TEST_F(ScenarioReader, AnUnknownMasterIsRefused) {
+  const std::string place = "<WorldPosition x=\"1\" y=\"2\"/>";
+  expectText(errorIn(scenario(privateAction(
+                 "<SynchronizeAction masterEntityRef=\"nobody\"><TargetPositionMaster>" + place +
+                 "</TargetPositionMaster><TargetPosition>" + place +
+                 "</TargetPosition></SynchronizeAction>"))),
+             "there is no entity 'nobody'");
+}
+
+TEST_F(ScenarioReader, ReadsAPlaceOnARoute) {
+  const std::string waypoint =
+      "<Waypoint routeStrategy=\"shortest\"><Position><WorldPosition x=\"1\" y=\"2\"/></Position>"
+      "</Waypoint>";
+  const auto teleport = [&](const std::string& waypoints) {
+    return privateAction(
+        "<TeleportAction><Position><RoutePosition><RouteRef><Route name=\"r\" closed=\"false\">" +
+        waypoints +
+        "</Route></RouteRef><InRoutePosition><FromLaneCoordinates pathS=\"20\" laneId=\"1\"/>"
+        "</InRoutePosition></RoutePosition></Position></TeleportAction>");
+  };
+  const Scenario read = readScenario(scenario(teleport(waypoint + waypoint)), false);
+  const Position& place = std::get<TeleportAction>(read.init.front().action.what).to;
+  EXPECT_EQ(place.kind, Position::Kind::kRoute);
+  EXPECT_EQ(place.route.size(), 2U);
+  EXPECT_EQ(place.s, 20.0);
+  EXPECT_EQ(place.lane, 1);
+  expectText(errorIn(scenario(teleport(waypoint))), "expected a route of at least two <Waypoint>");
+}
+
+TEST_F(ScenarioReader, AConditionMayHaveNoEdgeAndAnyName) {
+  const Scenario read = readScenario(
+      scenario("", "", "",
+               "<StopTrigger><ConditionGroup><Condition name=\"${late + $v}\" delay=\"0\">"
+               "<ByValueCondition><SimulationTimeCondition value=\"1\" rule=\"greaterThan\"/>"
+               "</ByValueCondition></Condition></ConditionGroup></StopTrigger>"),
+      false);
+  const Condition& condition = read.stop->groups.front().front();
+  EXPECT_EQ(condition.name, "${late + $v}");
+  EXPECT_EQ(condition.edge, Condition::Edge::kNone);
+}
+
 TEST_F(ScenarioReader, EntriesOfCatalogsTakeParameters) {
   write("catalogs/cars.xosc", std::string(R"(<OpenSCENARIO><Catalog name="cars">
 <Vehicle name="long"><ParameterDeclarations><ParameterDeclaration name="l" value="5"/></ParameterDeclarations>

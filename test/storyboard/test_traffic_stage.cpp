@@ -114,6 +114,7 @@ TEST_F(StoryboardTrafficStage, ADistanceIsKeptUntilItIsReached) {
   begin(speedOf(12.0));
   DistanceAction distance;
   distance.entity = "ego";
+  distance.limits = SpeedLimits{};
   distance.value = 50.0;  // 30 m less than now, so 12 m/s is the speed to begin with
   const auto performing = begin(distance);
   drive(2.0);
@@ -121,6 +122,145 @@ TEST_F(StoryboardTrafficStage, ADistanceIsKeptUntilItIsReached) {
   for (int i = 0; i < 600 && !performing->over; ++i) drive(kStep);
   EXPECT_TRUE(performing->over);
   EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 50.0, 0.15);
+}
+
+TEST_F(StoryboardTrafficStage, WithoutLimitsADistanceIsThereAtOnce) {
+  observe(100.0, 10.0);
+  begin(placeAt(20.0));
+  DistanceAction distance;
+  distance.entity = "ego";
+  distance.time_gap = true;
+  distance.freespace = true;
+  distance.value = 2.0;
+  distance.side = Side::kAheadOrLeft;
+  EXPECT_TRUE(begin(distance)->over);
+  // 2 s of the ego's 10 m/s, and boxes of 4 m.
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 124.0, 1e-6);
+}
+
+TEST_F(StoryboardTrafficStage, ADistanceIsKeptWithinTheLimits) {
+  observe(100.0, 30.0);
+  begin(placeAt(20.0));
+  begin(speedOf(10.0));
+  DistanceAction distance;
+  distance.entity = "ego";
+  distance.continuous = true;
+  distance.limits = SpeedLimits{2.0, 2.0, 15.0};
+  begin(distance);
+  drive(1.0);
+  EXPECT_NEAR(stage_.actor("car").speed(), 12.0, 1e-9);  // 2 m/s^2
+  drive(5.0);
+  EXPECT_EQ(stage_.actor("car").speed(), 15.0);
+}
+
+TEST_F(StoryboardTrafficStage, ALateralDistanceIsKeptAtItsSpeed) {
+  observe(100.0, 10.0);
+  begin(placeAt(20.0));
+  begin(speedOf(10.0));
+  LateralDistanceAction beside;
+  beside.entity = "ego";
+  beside.value = 0.5;
+  beside.freespace = true;
+  beside.side = Side::kBehindOrRight;
+  beside.speed = 1.0;
+  const auto performing = begin(beside);
+  drive(1.0);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.y(), kMiddle - 1.0, 1e-6);
+  EXPECT_FALSE(performing->over);
+  drive(2.0);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.y(), kMiddle - 2.5, 1e-6);
+  EXPECT_TRUE(performing->over);  // 0.5 m between boxes of 2 m
+}
+
+TEST_F(StoryboardTrafficStage, ASpeedProfileGoesThroughItsSpeeds) {
+  begin(placeAt(20.0));
+  SpeedProfileAction profile;
+  const auto part = [](double speed, Dynamics::Dimension dimension, double value) {
+    SpeedAction action = speedOf(speed);
+    action.dynamics = {Dynamics::Shape::kLinear, dimension, value};
+    return action;
+  };
+  profile.parts = {part(2.0, Dynamics::Dimension::kTime, 0.0),
+                   part(6.0, Dynamics::Dimension::kTime, 2.0),
+                   part(0.0, Dynamics::Dimension::kRate, 3.0)};
+  const auto performing = begin(profile);
+  EXPECT_EQ(stage_.actor("car").speed(), 2.0);
+  drive(1.0);
+  EXPECT_NEAR(stage_.actor("car").speed(), 4.0, 1e-9);
+  drive(2.0);
+  EXPECT_NEAR(stage_.actor("car").speed(), 3.0, 1e-9);  // 2 s to 6 m/s, then 1 s at -3 m/s^2
+  EXPECT_FALSE(performing->over);
+  drive(1.0);
+  EXPECT_TRUE(performing->over);
+}
+
+TEST_F(StoryboardTrafficStage, TwoMeetInTimeAndWithTheFinalSpeed) {
+  begin(placeAt(20.0));
+  begin(speedOf(8.0));
+  SynchronizeAction meeting;
+  meeting.master = "ego";
+  meeting.master_target.point = {200.0, kMiddle, 0.0};
+  meeting.target.point = {150.0, kMiddle, 0.0};
+  meeting.final_speed = speedOf(10.0);
+  double ego = 100.0;  // 10 s of 10 m/s before its target
+  observe(ego, 10.0);
+  const auto performing = begin(meeting);
+  for (int i = 0; i < 400 && !performing->over; ++i) {
+    drive(kStep);
+    ego += 10.0 * kStep;
+    observe(ego, 10.0);
+  }
+  EXPECT_TRUE(performing->over);
+  EXPECT_NEAR(ego, 199.0, 1.5);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 149.0, 1.5);
+  EXPECT_NEAR(stage_.actor("car").speed(), 10.0, 1.0);
+}
+
+TEST_F(StoryboardTrafficStage, WithoutAFinalSpeedTheSpeedStays) {
+  begin(placeAt(20.0));
+  begin(speedOf(13.0));
+  SynchronizeAction meeting;
+  meeting.master = "ego";
+  meeting.master_target.point = {200.0, kMiddle, 0.0};
+  meeting.target.point = {150.0, kMiddle, 0.0};
+  observe(100.0, 10.0);  // 10 s to its target; the car has 130 m to go
+  begin(meeting);
+  drive(kStep);
+  EXPECT_NEAR(stage_.actor("car").speed(), 13.0, 1e-6);
+}
+
+TEST_F(StoryboardTrafficStage, TheTimeOffTheRoadAndAtItsEndIsMeasured) {
+  observe(100.0, 10.0);
+  observe(100.5, 10.0);
+  EXPECT_FALSE(holds(Measure::kOffroad, 0.0));
+  traffic::VehicleState beside;
+  beside.position = {101.0, kMiddle + 20.0};
+  for (int i = 0; i < 4; ++i) stage_.observe("ego", beside, nullptr, kStep);
+  EXPECT_TRUE(holds(Measure::kOffroad, 0.2));
+  EXPECT_FALSE(holds(Measure::kOffroad, 0.25));
+  EXPECT_FALSE(holds(Measure::kEndOfRoad, 0.0));
+  observe(899.8, 10.0);
+  EXPECT_TRUE(holds(Measure::kEndOfRoad, 0.05));
+  EXPECT_FALSE(holds(Measure::kOffroad, 0.0));
+}
+
+TEST_F(StoryboardTrafficStage, APositionOnARouteCountsAlongIt) {
+  TeleportAction action;
+  action.to.kind = Position::Kind::kRoute;
+  action.to.route = {placeAt(50.0).to, placeAt(150.0).to};
+  action.to.s = 30.0;
+  action.to.t = 0.5;
+  begin(action);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 80.0, 1e-6);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.y(), kMiddle + 0.5, 1e-6);
+}
+
+TEST_F(StoryboardTrafficStage, ARouteGoesOnFromTheWaypointThatIsPassed) {
+  begin(placeAt(80.0));
+  begin(RouteAction{{placeAt(50.0).to, placeAt(150.0).to}});
+  begin(speedOf(10.0));
+  drive(1.0);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 90.0, 1e-6);
 }
 
 }  // namespace
