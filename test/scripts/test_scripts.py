@@ -98,7 +98,7 @@ done
 [ "$(basename "$network")" = Town09.net.xml ] || { echo "cdiff: no network" >&2; exit 3; }
 fault='/x/y.xosc:3: <TrailerAction>: this action is not supported'
 mkdir -p "$results"
-echo '{"status": "completed", "ego": {"collisions": 1}, "faults": ["'"$fault"' and was ignored"]}' >"$results/summary.json"
+echo '{"status": "completed", "ego": {"collisions": 1}, "faults": [{"text": "'"$fault"' and was ignored"}]}' >"$results/summary.json"
 case $name in
   good) exit 1 ;;
   partly) [ "${ignore:-}" ] && exit 0; echo "cdiff: $fault; --ignore-unsupported goes on without it" >&2; exit 3 ;;
