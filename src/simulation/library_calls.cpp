@@ -81,6 +81,14 @@ class LibraryCalls : public SumoCalls {
     return Vehicle::getAllSubscriptionResults();
   }
 
+  std::vector<std::string> persons() const override { return library::Person::getIDList(); }
+  PersonState person(const std::string& id) const override {
+    using Person = library::Person;
+    return {Person::getTypeID(id), Person::getVehicle(id), Person::getPosition3D(id),
+            Person::getAngle(id), Person::getSpeed(id)};
+  }
+  void removePerson(const std::string& id) const override { library::Person::remove(id); }
+
   std::vector<std::string> lights() const override { return Light::getIDList(); }
   std::string lightState(const std::string& light) const override {
     return Light::getRedYellowGreenState(light);

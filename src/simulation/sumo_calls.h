@@ -21,6 +21,15 @@ struct FreePlace {
   double match_threshold = 0.0;                     ///< largest distance to a lane [m]
 };
 
+/// What SUMO says of a person, in its conventions.
+struct PersonState {
+  std::string type;
+  std::string vehicle;  ///< that the person is in; empty: none
+  libsumo::TraCIPosition position;
+  double angle = 0.0;  ///< clockwise from north [deg]
+  double speed = 0.0;  ///< [m/s]
+};
+
 /// How a vehicle departs: words or numbers as in SUMO's route files.
 struct Departure {
   std::string lane = "first";
@@ -67,6 +76,10 @@ class SumoCalls {
   virtual void subscribe(const std::string& vehicle, const std::vector<int>& variables) const = 0;
   virtual void unsubscribe(const std::string& vehicle) const = 0;
   virtual libsumo::SubscriptionResults vehicleResults() const = 0;
+
+  virtual std::vector<std::string> persons() const = 0;
+  virtual PersonState person(const std::string& id) const = 0;
+  virtual void removePerson(const std::string& id) const = 0;
 
   virtual std::vector<std::string> lights() const = 0;
   virtual std::string lightState(const std::string& light) const = 0;

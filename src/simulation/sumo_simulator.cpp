@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/driven_fleet.h"
+#include "simulation/person_observer.h"
 #include "simulation/sumo_link.h"
 #include "simulation/sumo_start.h"
 #include "simulation/traffic_observer.h"
@@ -69,6 +70,7 @@ class SumoSimulator::Connection {
         observer_(calls_),
         fleet_(link_, graph_, options.match_threshold, session.simulation_step) {
     link_.guarded("start", [&] { observer_.start(session.lights_green); });
+    if (hasPersons(session.demand_file)) persons_.emplace(calls_);
     if (session.lights_green) right_of_way_.emplace(network, observer_.signals());
   }
 
@@ -153,8 +155,11 @@ class SumoSimulator::Connection {
       fleet_.report(observer_.correctable());
     }
     dropWaiting();
-    const core::TimedStage stage("right_of_way");
-    grantRightOfWay();
+    {
+      const core::TimedStage stage("right_of_way");
+      grantRightOfWay();
+    }
+    if (persons_) persons_->addTo(observer_.correctable());
   }
 
   /// SUMO takes a moved vehicle out when it believes that it has arrived; it goes on where we say.
@@ -194,6 +199,10 @@ class SumoSimulator::Connection {
   /// A subscription to a vehicle that is taken out makes SUMO's next step fail, so it ends first.
   /// No error when it is gone already.
   void takeOut(const std::string& id) {
+    if (persons_ && persons_->contains(id)) {
+      link_.attempt([&] { persons_->remove(id); });
+      return;
+    }
     if (observer_.find(id) != nullptr) {
       link_.attempt([&] { calls_.unsubscribe(id); });
     }
@@ -218,6 +227,7 @@ class SumoSimulator::Connection {
   const SumoCalls& calls_;
   TrafficObserver observer_;
   DrivenFleet fleet_;
+  std::optional<PersonObserver> persons_;   ///< where the demand has some
   std::optional<RightOfWay> right_of_way_;  ///< when all lights are green
   std::set<std::string> fresh_;             ///< added since the last step
   std::vector<std::string> waiting_;        ///< background vehicles added since the last step

@@ -30,7 +30,8 @@ class TrafficObserver {
   /// Reads the results of the step that was made.
   void read();
 
-  /// The same as `vehicles`, for what is known better than SUMO knows it; ids and order must stay.
+  /// The same as `vehicles`, for what is known better than SUMO knows it, and for who else is
+  /// there; the order must stay that of the ids.
   std::vector<SimulatedVehicle>& correctable() { return vehicles_; }
   /// By id.
   const std::vector<SimulatedVehicle>& vehicles() const { return vehicles_; }

@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 using record::TraceRow;
 
 constexpr int kPassed = 0;
+constexpr int kFailed = 1;
 constexpr int kBadInput = 3;
 
 class OpenScenario : public test::CdiffCommand {
@@ -24,14 +25,15 @@ class OpenScenario : public test::CdiffCommand {
   }
   /// Replaces a text of the example.
   void change(const std::string& from, const std::string& to) const {
-    std::string text = core::readFile(path("files/cut_in.xosc"), "example");
+    std::string text = core::readFile(path("files/" + file_), "example");
     const std::size_t place = text.find(from);
     ASSERT_NE(place, std::string::npos) << from;
-    core::writeFileAtomically(path("files/cut_in.xosc"), text.replace(place, from.size(), to));
+    core::writeFileAtomically(path("files/" + file_), text.replace(place, from.size(), to));
   }
-  int drive(const std::string& results, const std::vector<std::string>& more = {}) const {
+  int drive(const std::string& results, const std::vector<std::string>& more = {},
+            const std::string& ego = "pdm_lite") const {
     std::vector<std::string> words = {
-        "run",   path("files/cut_in.xosc"),  "--ego-planner", "pdm_lite",   "--quiet",
+        "run",   path("files/" + file_),     "--ego-planner", ego,          "--quiet",
         "--set", "report.front_view_rate=0", "--results",     path(results)};
     words.insert(words.end(), more.begin(), more.end());
     return cdiff(words);
@@ -45,6 +47,7 @@ class OpenScenario : public test::CdiffCommand {
       if (row.id == id) rows.push_back(row);
     return rows;
   }
+  std::string file_ = "cut_in.xosc";
 };
 
 TEST_F(OpenScenario, TheExampleCutsInAndEndsWithItsTrigger) {
@@ -84,8 +87,7 @@ TEST_F(OpenScenario, AControllersNameMakesAVehicleACbv) {
 }
 
 TEST_F(OpenScenario, TheEgoBrakesForThePedestrian) {
-  fs::copy(path("files/crossing_pedestrian.xosc"), path("files/cut_in.xosc"),
-           fs::copy_options::overwrite_existing);
+  file_ = "crossing_pedestrian.xosc";
   ASSERT_EQ(drive("braked"), kPassed) << output();
   EXPECT_EQ(summary("braked").at("ego").at("collisions"), 0);
   const std::vector<TraceRow> ego = rows("braked", "ego");
@@ -94,17 +96,43 @@ TEST_F(OpenScenario, TheEgoBrakesForThePedestrian) {
       [](const TraceRow& left, const TraceRow& right) { return left.speed < right.speed; });
   EXPECT_LT(slowest->speed, 4.0);             // 8 m/s before it
   EXPECT_LT(slowest->position.x(), 150.0);    // ahead of the pedestrian
-  EXPECT_GT(ego.back().position.x(), 160.0);  // and then goes on
+  EXPECT_GT(ego.back().position.x(), 160.0);  // and then it goes on
   EXPECT_EQ(rows("braked", "bin").back().position.x(), 120.0);
   EXPECT_GT(rows("braked", "walker").back().position.y(), 0.0);
 }
 
-TEST_F(OpenScenario, AContactWithThePedestrianCounts) {
-  fs::copy(path("files/crossing_pedestrian.xosc"), path("files/cut_in.xosc"),
-           fs::copy_options::overwrite_existing);
-  change("value=\"1.4\"", "value=\"1\"");  // so that it is in the lane when the ego is there
-  EXPECT_EQ(drive("hit", {"--ego-planner", "constant"}), 1) << output();
+TEST_F(OpenScenario, AContactWithThePedestrianCountsAndACarefulDriverAvoidsIt) {
+  file_ = "crossing_pedestrian.xosc";
+  ASSERT_EQ(drive("hit", {}, "constant"), kFailed) << output();
   EXPECT_EQ(summary("hit").at("ego").at("collisions"), 1);
+  ASSERT_EQ(cdiff({"what_if", path("hit"), "--contact", "1", "--without-latest"}), 0) << output();
+  const auto found = nlohmann::json::parse(
+      core::readFile(path("hit/what_if/contact_1_careful_driver.json"), "answer"));
+  EXPECT_EQ(found.at("contact").at("with"), "walker");
+  EXPECT_TRUE(found.at("closed").at("avoids").get<bool>()) << found.dump(2);
+}
+
+// Twenty entities with the controller of a planner; each may be a CBV.
+TEST_F(OpenScenario, MayHaveManyCbvs) {
+  std::string entities;
+  std::string places;
+  for (int i = 0; i < 20; ++i) {
+    const std::string name = "car_" + std::to_string(i);
+    entities += "<ScenarioObject name=\"" + name +
+                "\"><CatalogReference catalogName=\"vehicles\" entryName=\"car\"/>"
+                "<ObjectController><Controller name=\"pdm_lite\"/></ObjectController>"
+                "</ScenarioObject>";
+    places += "<Private entityRef=\"" + name +
+              "\"><PrivateAction><TeleportAction><Position><LanePosition roadId=\"1\" laneId=\"" +
+              (i % 2 == 0 ? "-1" : "-2") + "\" s=\"" + std::to_string(80 + 12 * i) +
+              "\"/></Position></TeleportAction></PrivateAction></Private>";
+  }
+  change("</Entities>", entities + "</Entities>");
+  change("<Private entityRef=\"overtaker\">", places + "<Private entityRef=\"overtaker\">");
+  ASSERT_LE(drive("many", {"--set", "protocol.time_limit=5"}), kFailed) << output();
+  EXPECT_EQ(rows("many", "car_19").front().role, traffic::VehicleRole::kBackground);
+  const std::string keys = core::readFile(path("many/session.yaml"), "session");
+  EXPECT_NE(keys.find("max_cbv: 20"), std::string::npos);
 }
 
 TEST_F(OpenScenario, WhatIsNotSupportedIsRefusedOrListedInTheSummary) {

@@ -129,6 +129,32 @@ esac
             self.assertIn("| set | 4 | 0 | 0 | 0 | 4 |", covered(root / "set").stdout)
             self.assertEqual(covered(root / "set/catalogs").returncode, 3)
 
+    def test_exports_are_compared_with_their_sessions(self):
+        # The stand-in for cdiff drives "a" 0.3 m away in x and 0.4 m in y, one tick late; the ego does not count, nor does who is in one alone.
+        program = """#!/bin/bash
+while [ $# -gt 0 ]; do case $1 in --output) export=$2 ;; --results) results=$2 ;; esac; shift; done
+[ -z "${export:-}" ] || { mkdir -p "$export"; touch "$export/x.xosc"; exit 0; }
+mkdir -p "$results"
+printf 'tick,id,x,y\\n0,ego,9,9\\n1,a,1.3,0.4\\n2,a,2,0\\n2,c,0,0\\n' >"$results/trace.csv"
+exit 1
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "cdiff").write_text(program)
+            (root / "cdiff").chmod(0o755)
+            (root / "run").mkdir()
+
+            def compared():
+                return subprocess.run([SOURCE / "scripts/openscenario_accuracy", "--cdiff", root / "cdiff", root / "run"], timeout=60,
+                                      capture_output=True, text=True, check=False)
+
+            self.assertEqual(compared().returncode, 3)
+            (root / "run/trace.csv").write_text("tick,id,x,y\n0,ego,0,0\n0,a,0,0\n1,a,1,0\n2,a,2,0\n1,b,0,0\n")
+            done = compared()
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("| run | 2 | 0.500 | 0.05 |", done.stdout)
+            self.assertIn("Largest: 0.500 m and 0.05 s in 1 sessions", done.stdout)
+
     def test_benchmark_builds_itself_only(self):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
         self.assertEqual(targets_of(calls_of("benchmark", "--json", "x", "map")), [["cdiff_benchmark"]])
