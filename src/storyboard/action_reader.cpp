@@ -104,6 +104,46 @@ void readTiming(const XoscElement& element, FollowTrajectoryAction& action) {
   if (action.scale <= 0.0) timing->fail("'scale' is not above 0");
 }
 
+void readVertices(const XoscElement& shape, const char* name, const Reading& reading,
+                  FollowTrajectoryAction& action) {
+  for (const XoscElement& vertex : shape.children(name))
+    action.vertices.push_back({vertex.number("time", 0.0), readPosition(vertex, reading)});
+  if (action.vertices.size() < 2) shape.fail("expected at least two vertices");
+}
+
+/// Its curvature is that of CARLA's coordinates where the file has them.
+void readClothoid(const XoscElement& shape, const Reading& reading,
+                  FollowTrajectoryAction& action) {
+  const double side = reading.carla ? -1.0 : 1.0;
+  const char* const change = shape.has("curvaturePrime") ? "curvaturePrime" : "curvatureDot";
+  action.clothoid = {side * shape.number("curvature"), side * shape.number(change),
+                     shape.number("length")};
+  if (action.clothoid->length <= 0.0) shape.fail("'length' is not above 0");
+  const Position start = readPosition(shape, reading);
+  action.timed = action.timed && shape.has("stopTime");
+  action.vertices = {{shape.number("startTime", 0.0), start},
+                     {shape.number("stopTime", 0.0), start}};
+}
+
+void readSpline(const XoscElement& shape, const Reading& reading, FollowTrajectoryAction& action) {
+  readVertices(shape, "ControlPoint", reading, action);
+  Spline spline;
+  spline.order = static_cast<std::size_t>(std::clamp(shape.integer("order"), 0, 100));
+  for (const XoscElement& point : shape.children("ControlPoint"))
+    spline.weights.push_back(point.number("weight", 1.0));
+  for (const XoscElement& knot : shape.children("Knot"))
+    spline.knots.push_back(knot.number("value"));
+  const std::size_t points = action.vertices.size();
+  if (spline.order < 2 || spline.order > points)
+    shape.fail("'order' is not between 2 and the number of control points");
+  if (spline.knots.size() != points + spline.order ||
+      !std::is_sorted(spline.knots.begin(), spline.knots.end()))
+    shape.fail("expected " + std::to_string(points + spline.order) + " knots that never fall");
+  if (*std::min_element(spline.weights.begin(), spline.weights.end()) <= 0.0)
+    shape.fail("expected weights above 0");
+  action.spline = std::move(spline);
+}
+
 ActionWhat readTrajectory(const XoscElement& element, Reading& reading) {
   FollowTrajectoryAction action;
   auto holder = element.find("TrajectoryRef");
@@ -114,11 +154,16 @@ ActionWhat readTrajectory(const XoscElement& element, Reading& reading) {
   Reading::refuseAttributes(element, {"initialDistanceOffset"});
   if (trajectory.flag("closed", false)) Reading::refuse(trajectory, "a closed trajectory");
   const XoscElement shape = trajectory.child("Shape").only();
-  if (shape.name() != "Polyline") Reading::refuse(shape, "a trajectory of this shape");
   readTiming(element, action);
-  for (const XoscElement& vertex : shape.children("Vertex"))
-    action.vertices.push_back({vertex.number("time", 0.0), readPosition(vertex, reading)});
-  if (action.vertices.size() < 2) shape.fail("expected at least two vertices");
+  if (shape.name() == "Clothoid") {
+    readClothoid(shape, reading, action);
+  } else if (shape.name() == "Nurbs") {
+    readSpline(shape, reading, action);
+  } else if (shape.name() == "Polyline") {
+    readVertices(shape, "Vertex", reading, action);
+  } else {
+    Reading::refuse(shape, "a trajectory of this shape");
+  }
   for (std::size_t i = 1; action.timed && i < action.vertices.size(); ++i)
     if (action.vertices[i].time <= action.vertices[i - 1].time)
       shape.fail("the time of vertex " + std::to_string(i + 1) + " is not after the one before");

@@ -154,6 +154,16 @@ MapPose Places::onRoute(const Position& position, const PoseOf& pose_of) const {
   return place;
 }
 
+/// In the axes of the entity or in those of the world.
+MapPose Places::relativeToEntity(const Position& position, MapPose place) {
+  const Eigen::Vector2d difference = position.point.head<2>();
+  const bool turned = position.kind == Kind::kObject;
+  place.pose.position =
+      turned ? place.pose.toMap(difference) : Eigen::Vector2d(place.pose.position + difference);
+  place.elevation += position.point.z();
+  return place;
+}
+
 MapPose Places::withoutOwnHeading(const Position& position, const PoseOf& pose_of) const {
   const Eigen::Vector3d& point = position.point;
   switch (position.kind) {
@@ -168,14 +178,8 @@ MapPose Places::withoutOwnHeading(const Position& position, const PoseOf& pose_o
     case Kind::kRelativeRoad:
       return relativeToRoad(position, pose_of(position.entity));
     case Kind::kObject:
-    case Kind::kRelativeWorld: {
-      MapPose place = pose_of(position.entity);
-      const bool turned = position.kind == Kind::kObject;
-      place.pose.position = turned ? place.pose.toMap(point.head<2>())
-                                   : Eigen::Vector2d(place.pose.position + point.head<2>());
-      place.elevation += point.z();
-      return place;
-    }
+    case Kind::kRelativeWorld:
+      return relativeToEntity(position, pose_of(position.entity));
     case Kind::kWorld:
       break;
   }

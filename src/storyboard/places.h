@@ -57,6 +57,7 @@ class Places {
   MapPose onRoute(const Position& position, const PoseOf& pose_of) const;
   bool leadsPast(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                  const Eigen::Vector2d& place) const;
+  static MapPose relativeToEntity(const Position& position, MapPose place);
   MapPose withoutOwnHeading(const Position& position, const PoseOf& pose_of) const;
   MapPose relativeToLane(const Position& position, const MapPose& reference) const;
   MapPose relativeToRoad(const Position& position, const MapPose& reference) const;

@@ -103,9 +103,26 @@ struct TrajectoryVertex {
   Position position;
 };
 
-/// Follows a polyline: at its times, or without them at the present speed.
+/// A curve whose curvature changes evenly.
+struct Clothoid {
+  double curvature = 0.0;  ///< at its start, positive left [1/m]
+  double change = 0.0;     ///< of the curvature along the curve [1/m^2]
+  double length = 0.0;     ///< [m]
+};
+
+/// A rational B-spline (NURBS).
+struct Spline {
+  std::size_t order = 4;        ///< degree plus 1
+  std::vector<double> weights;  ///< of its control points
+  std::vector<double> knots;    ///< never falling, one for each control point and `order` more
+};
+
+/// Follows a line: at its times, or without them at the present speed.
 struct FollowTrajectoryAction {
-  std::vector<TrajectoryVertex> vertices;
+  std::vector<TrajectoryVertex> vertices;  ///< of a polyline, start and end of a clothoid (both at
+                                           ///< its start), or control points of a spline
+  std::optional<Clothoid> clothoid;
+  std::optional<Spline> spline;
   bool timed = false;
   bool absolute = true;  ///< times count from the simulation's start, else from the action's
   double scale = 1.0;

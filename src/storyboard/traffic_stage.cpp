@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "storyboard/curve.h"
 
 namespace cdiff::storyboard {
 namespace {
@@ -175,41 +176,56 @@ bool TrafficStage::collides(const EntityCondition& condition, const std::string&
          });
 }
 
+/// What is measured of an entity alone; nullopt where there is nothing to compare.
+std::optional<double> TrafficStage::ownValue(Measure measure, const Member& own) {
+  const auto lasting = [](double seconds) {
+    return seconds > 0.0 ? std::optional<double>(seconds) : std::nullopt;
+  };
+  switch (measure) {
+    case Measure::kSpeed:
+      return own.state.speed;
+    case Measure::kAcceleration:
+      return std::abs(own.acceleration);
+    case Measure::kStandStill:
+      return own.standing;
+    case Measure::kTraveledDistance:
+      return own.traveled;
+    case Measure::kEndOfRoad:
+      return lasting(own.at_the_end);
+    case Measure::kOffroad:
+      return lasting(own.off_road);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// What is measured of an entity, also against another one or a place.
+std::optional<double> TrafficStage::valueOf(const EntityCondition& condition,
+                                            const std::string& entity) const {
+  const Member& own = member(entity);
+  switch (condition.measure) {
+    case Measure::kRelativeSpeed:
+      return own.state.speed - member(condition.other).state.speed;
+    case Measure::kReachPosition:
+    case Measure::kDistance:
+      return distance(condition, entity);
+    case Measure::kHeadway:
+      if (own.state.speed <= 1e-3) return std::nullopt;
+      return distance(condition, entity) / own.state.speed;
+    case Measure::kTimeToCollision:
+      return timeToCollision(condition, entity);
+    default:
+      return ownValue(condition.measure, own);
+  }
+}
+
 bool TrafficStage::measured(const EntityCondition& condition, const std::string& entity) const {
   if (condition.measure == Measure::kCollision) return collides(condition, entity);
   if (!present(entity)) return false;
   for (const std::string& other : {condition.other, condition.place ? condition.place->entity : ""})
     if (!other.empty() && !present(other)) return false;
-  const Member& own = member(entity);
-  const auto holds = [&](double value) {
-    return compareNumbers(condition.rule, value, condition.value);
-  };
-  switch (condition.measure) {
-    case Measure::kSpeed:
-      return holds(own.state.speed);
-    case Measure::kRelativeSpeed:
-      return holds(own.state.speed - member(condition.other).state.speed);
-    case Measure::kAcceleration:
-      return holds(std::abs(own.acceleration));
-    case Measure::kStandStill:
-      return holds(own.standing);
-    case Measure::kTraveledDistance:
-      return holds(own.traveled);
-    case Measure::kReachPosition:
-    case Measure::kDistance:
-      return holds(distance(condition, entity));
-    case Measure::kHeadway:
-      return own.state.speed > 1e-3 && holds(distance(condition, entity) / own.state.speed);
-    case Measure::kTimeToCollision:
-      return holds(timeToCollision(condition, entity));
-    case Measure::kEndOfRoad:
-      return own.at_the_end > 0.0 && holds(own.at_the_end);
-    case Measure::kOffroad:
-      return own.off_road > 0.0 && holds(own.off_road);
-    case Measure::kCollision:
-      break;
-  }
-  return false;
+  const auto value = valueOf(condition, entity);
+  return value && compareNumbers(condition.rule, *value, condition.value);
 }
 
 bool TrafficStage::holds(const Condition& condition, double time) {
@@ -394,19 +410,46 @@ void TrafficStage::perform(const LaneChangeAction& action, Actor& actor,
   actor.changeLane(action.dynamics, target(0.0), target(action.offset), performing);
 }
 
-void TrafficStage::perform(const FollowTrajectoryAction& action, Actor& actor,
-                           const Actor::Performing& performing) {
+/// The places of a trajectory, each with its time in the file [s].
+TrafficStage::Course TrafficStage::courseOf(const FollowTrajectoryAction& action) const {
   std::vector<MapPose> places;
-  std::vector<double> times;
+  std::vector<TimedPoint> points;
   for (const TrajectoryVertex& vertex : action.vertices) {
     places.push_back(places_.resolve(vertex.position, pose_of_));
-    const double from = action.absolute ? 0.0 : now_;
-    if (action.timed) times.push_back(from + vertex.time * action.scale + action.offset);
+    const Eigen::Vector2d& at = places.back().pose.position;
+    points.emplace_back(at.x(), at.y(), places.back().elevation, vertex.time);
   }
+  Course course;
+  if (action.spline) {
+    for (const TimedPoint& point : pointsAlong(*action.spline, points))
+      course.push_back({{{point.head<2>(), 0.0}, point.z()}, point.w(), false});
+    return course;
+  }
+  if (action.clothoid) places = placesAlong(*action.clothoid, places.front());
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (action.vertices[i].position.oriented) continue;
-    const std::size_t first = i + 1 < places.size() ? i : i - 1;
-    const Eigen::Vector2d ahead = places[first + 1].pose.position - places[first].pose.position;
+    const double share = static_cast<double>(i) / static_cast<double>(places.size() - 1);
+    const double first = action.vertices.front().time;
+    const double between = first + share * (action.vertices.back().time - first);
+    const bool vertex = !action.clothoid;
+    course.push_back({places[i], vertex ? action.vertices[i].time : between,
+                      !vertex || action.vertices[i].position.oriented});
+  }
+  return course;
+}
+
+void TrafficStage::perform(const FollowTrajectoryAction& action, Actor& actor,
+                           const Actor::Performing& performing) {
+  const Course course = courseOf(action);
+  std::vector<MapPose> places;
+  std::vector<double> times;
+  for (std::size_t i = 0; i < course.size(); ++i) {
+    places.push_back(course[i].place);
+    const double from = action.absolute ? 0.0 : now_;
+    if (action.timed) times.push_back(from + course[i].time * action.scale + action.offset);
+    if (course[i].oriented) continue;
+    const std::size_t first = i + 1 < course.size() ? i : i - 1;
+    const Eigen::Vector2d ahead =
+        course[first + 1].place.pose.position - course[first].place.pose.position;
     if (ahead.norm() > 1e-6) places[i].pose.heading = std::atan2(ahead.y(), ahead.x());
   }
   actor.follow(std::move(places), std::move(times), performing);

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -68,6 +69,8 @@ class TrafficStage : public Stage {
   MapPose poseOf(const std::string& entity) const;
   geometry::OrientedBox boxOf(const std::string& entity) const;
   const map::Route* routeOf(const std::string& entity) const;
+  static std::optional<double> ownValue(EntityCondition::Measure measure, const Member& own);
+  std::optional<double> valueOf(const EntityCondition& condition, const std::string& entity) const;
   bool measured(const EntityCondition& condition, const std::string& entity) const;
   double distance(const EntityCondition& condition, const std::string& entity) const;
   double alongDistance(const EntityCondition& condition, const std::string& entity,
@@ -95,6 +98,14 @@ class TrafficStage : public Stage {
   void perform(const SynchronizeAction& action, Actor& actor, const Actor::Performing& performing);
   void perform(const SpeedProfileAction& action, Actor& actor, const Actor::Performing& performing);
   void perform(const LaneChangeAction& action, Actor& actor, const Actor::Performing& performing);
+  /// A place of a trajectory.
+  struct CoursePoint {
+    MapPose place;
+    double time = 0.0;      ///< in the file [s]
+    bool oriented = false;  ///< whether its heading counts
+  };
+  using Course = std::vector<CoursePoint>;
+  Course courseOf(const FollowTrajectoryAction& action) const;
   void perform(const LaneOffsetAction& action, Actor& actor, const Actor::Performing& performing);
   void perform(const FollowTrajectoryAction& action, Actor& actor,
                const Actor::Performing& performing);

@@ -199,6 +199,39 @@ TEST_F(ScenarioReader, AConditionMayHaveNoEdgeAndAnyName) {
   EXPECT_EQ(condition.edge, Condition::Edge::kNone);
 }
 
+TEST_F(ScenarioReader, ReadsCurvesOfTrajectories) {
+  const std::string place = "<Position><WorldPosition x=\"1\" y=\"2\"/></Position>";
+  const auto course = [&](const std::string& shape) {
+    return scenario(privateAction(
+        "<RoutingAction><FollowTrajectoryAction><Trajectory name=\"t\" closed=\"false\"><Shape>" +
+        shape +
+        "</Shape></Trajectory><TimeReference><None/></TimeReference></FollowTrajectoryAction>"
+        "</RoutingAction>"));
+  };
+  const auto read = [&](const std::string& shape) {
+    return std::get<FollowTrajectoryAction>(
+        readScenario(course(shape), false).init.front().action.what);
+  };
+  const auto clothoid = read("<Clothoid curvature=\"0.1\" curvatureDot=\"0.2\" length=\"30\">" +
+                             place + "</Clothoid>");
+  EXPECT_EQ(clothoid.clothoid->change, 0.2);
+  EXPECT_EQ(clothoid.clothoid->length, 30.0);
+  const std::string points = "<ControlPoint weight=\"2\">" + place +
+                             "</ControlPoint><ControlPoint>" + place + "</ControlPoint>";
+  const auto knots = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += "<Knot value=\"" + std::to_string(i) + "\"/>";
+    return text;
+  };
+  const auto spline = read("<Nurbs order=\"2\">" + points + knots(4) + "</Nurbs>");
+  EXPECT_EQ(spline.spline->weights, (std::vector<double>{2.0, 1.0}));
+  EXPECT_EQ(spline.spline->knots.size(), 4U);
+  expectText(errorIn(course("<Nurbs order=\"2\">" + points + knots(3) + "</Nurbs>")),
+             "expected 4 knots");
+  expectText(errorIn(course("<Nurbs order=\"3\">" + points + knots(5) + "</Nurbs>")),
+             "'order' is not between 2 and the number of control points");
+}
+
 TEST_F(ScenarioReader, EntriesOfCatalogsTakeParameters) {
   write("catalogs/cars.xosc", std::string(R"(<OpenSCENARIO><Catalog name="cars">
 <Vehicle name="long"><ParameterDeclarations><ParameterDeclaration name="l" value="5"/></ParameterDeclarations>
@@ -256,12 +289,13 @@ TEST_F(ScenarioReader, UnknownEntitiesAreNamedBeforeAnythingRuns) {
 TEST_F(ScenarioReader, WhatIsNotSupportedIsRefusedOrListed) {
   const std::string curve =
       "<RoutingAction><FollowTrajectoryAction><Trajectory name=\"t\" closed=\"false\"><Shape>\n"
-      "<Nurbs order=\"9\"/></Shape></Trajectory></FollowTrajectoryAction></RoutingAction>";
+      "<ClothoidSpline/></Shape></Trajectory></FollowTrajectoryAction></RoutingAction>";
   const std::string file = scenario(privateAction(curve));
-  expectText(errorIn(file), file + ":12: <Nurbs>: a trajectory of this shape is not supported");
+  expectText(errorIn(file),
+             file + ":12: <ClothoidSpline>: a trajectory of this shape is not supported");
   const Scenario read = readScenario(file, true);
   ASSERT_EQ(read.ignored.size(), 1U);
-  expectText(read.ignored[0], ":12: <Nurbs>");
+  expectText(read.ignored[0], ":12: <ClothoidSpline>");
   EXPECT_TRUE(std::holds_alternative<NoAction>(read.init[0].action.what));
 }
 

@@ -263,5 +263,34 @@ TEST_F(StoryboardTrafficStage, ARouteGoesOnFromTheWaypointThatIsPassed) {
   EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 90.0, 1e-6);
 }
 
+TEST_F(StoryboardTrafficStage, AClothoidIsFollowedBetweenItsTimes) {
+  begin(placeAt(20.0));
+  FollowTrajectoryAction course;
+  course.clothoid = Clothoid{0.0, 0.0, 40.0};
+  course.timed = true;
+  course.vertices = {{0.0, placeAt(20.0).to}, {4.0, placeAt(20.0).to}};
+  const auto performing = begin(course);
+  drive(2.0);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 40.0, 1e-6);
+  EXPECT_FALSE(performing->over);
+  drive(2.0);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 60.0, 1e-6);
+  EXPECT_TRUE(performing->over);
+}
+
+TEST_F(StoryboardTrafficStage, ASplineIsFollowedAtTheSpeed) {
+  begin(placeAt(20.0));
+  begin(speedOf(10.0));
+  FollowTrajectoryAction course;
+  course.spline = Spline{2, {1.0, 1.0}, {0.0, 0.0, 1.0, 1.0}};
+  course.vertices = {{0.0, placeAt(20.0).to}, {0.0, placeAt(50.0).to}};
+  course.vertices.back().position.point.y() = kMiddle + 40.0;  // 50 m away
+  begin(course);
+  drive(2.0);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 32.0, 1e-6);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.y(), kMiddle + 16.0, 1e-6);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.heading, std::atan2(40.0, 30.0), 1e-6);
+}
+
 }  // namespace
 }  // namespace cdiff::storyboard
