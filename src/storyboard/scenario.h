@@ -355,6 +355,7 @@ struct Scenario {
   std::vector<InitAction> init;
   std::vector<Story> stories;
   std::optional<Trigger> stop;
+  bool ends_with_stories = false;    ///< it is over when they are complete, too
   std::vector<std::string> ignored;  ///< what is not supported, with file and line
 
   /// The entity with this name, or nullptr.

@@ -297,6 +297,8 @@ Scenario readScenario(const std::string& file, bool ignore_unsupported) {
   for (const XoscElement& story : board.children("Story"))
     scenario.stories.push_back(readStory(story, reading));
   scenario.stop = readTriggerOf(board, "StopTrigger", reading);
+  // In files of scenario_runner the stop trigger only holds criteria.
+  scenario.ends_with_stories = reading.carla;
   scenario.ignored = std::move(reading.ignored);
   NameCheck(scenario).check();
   return scenario;

@@ -220,7 +220,11 @@ void Storyboard::update(double time) {
     if (complete && story->state == ElementState::kRunning)
       enter(*story, ElementState::kComplete, kEnd);
   }
-  over_ = scenario_.stop && fires(*scenario_.stop);
+  const bool told =
+      !stories_.empty() && std::all_of(stories_.begin(), stories_.end(), [](const auto& story) {
+        return story.first->state == ElementState::kComplete;
+      });
+  over_ = (scenario_.stop && fires(*scenario_.stop)) || (scenario_.ends_with_stories && told);
 }
 
 void Storyboard::updateAct(ActRun& act) {

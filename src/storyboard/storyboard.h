@@ -49,7 +49,7 @@ class Storyboard {
 
   /// Evaluates the triggers at `time` [s], which grows from call to call, and starts actions.
   void update(double time);
-  /// Whether its stop trigger has fired.
+  /// Whether its stop trigger has fired, or its last story has ended where that ends the scenario.
   bool over() const { return over_; }
   /// State of the element of this type ("act", "event" ...) and name ("A::B" for B in A). Throws
   /// InputError for an unknown one.

@@ -97,6 +97,8 @@ TEST_F(ScenarioReader, InFilesOfCarlaStepsLastAndEdgesDoNotCount) {
   EXPECT_EQ(dynamics(carla).value, 1.5);
   EXPECT_EQ(dynamics(carla).dimension, Dynamics::Dimension::kDistance);
   EXPECT_EQ(edge(carla), Condition::Edge::kNone);
+  EXPECT_TRUE(carla.ends_with_stories);
+  EXPECT_FALSE(plain.ends_with_stories);
 }
 
 TEST_F(ScenarioReader, KnowsWhoIsNoMotorVehicle) {

@@ -81,6 +81,20 @@ TEST(Storyboard, AnEventWaitsRunsAndCompletesWithAllAboveIt) {
   }
 }
 
+TEST(Storyboard, EndsWithItsStoriesWhereTheFileSaysSo) {
+  for (const bool ends : {true, false}) {
+    Scenario scenario = scenarioOf({event("first", std::nullopt)});
+    scenario.ends_with_stories = ends;
+    ScriptedStage stage;
+    Storyboard board(scenario, stage);
+    board.update(0.0);
+    EXPECT_FALSE(board.over());
+    stage.performing["act_of_first"]->over = true;
+    board.update(0.1);
+    EXPECT_EQ(board.over(), ends);
+  }
+}
+
 TEST(Storyboard, AnEventFollowsTheEndOfAnother) {
   const Scenario scenario =
       scenarioOf({event("second", whenState("event", "maneuver::first", "endTransition")),
