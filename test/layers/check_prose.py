@@ -38,7 +38,7 @@ MARKED = ["as (?:a )?figures?", "but for (?:those|what|the|if|two|where)", "none
           "is so not", "and so much do", "beside other work", "the default before", "as it was", "as they were", "today's"]
 DATED = {"docs/results.md", "docs/sealed_suites.md", "docs/sealed_suites_log.md", "docs/nightly.md", "docs/reliability.md", "docs/model_card.md", "docs/model_card_paper.md",
          "docs/model_card_paper_literal.md",
-         "docs/reproduce.md", "docs/comparison.md"}
+         "docs/reproduce.md", "docs/comparison.md", "docs/openscenario.md"}
 DATE_OR_MACHINE = re.compile(r"\b20\d\d-\d\d-\d\d\b|\bEPYC\b|\bXeon\b")
 
 
