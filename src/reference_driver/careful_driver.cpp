@@ -93,6 +93,12 @@ CarefulDriver::Clock& CarefulDriver::clockOf(const SeenVehicle& vehicle, const C
   return clock;
 }
 
+/// A pedestrian or a bicycle, by its box, is not expected to yield.
+bool CarefulDriver::isSmall(const SeenVehicle& vehicle) {
+  constexpr double kSmall = 1.0;  // half of the shortest car [m]
+  return std::max(vehicle.half_along, vehicle.half_across) < kSmall;
+}
+
 bool CarefulDriver::isRisk(const OwnMotion& own, const Conflict& conflict,
                            const SeenVehicle& vehicle, const Clock& clock, bool nearest) const {
   const double look_ahead =
@@ -111,6 +117,7 @@ bool CarefulDriver::isRisk(const OwnMotion& own, const Conflict& conflict,
     return conflict.gap >= 0.0 &&
            clock.steady_offset - conflict.to_corridor > options_.lateral_deviation;
   if (conflict.kind == ConflictKind::kOncoming) return conflict.to_corridor < kCenterLine;
+  if (isSmall(vehicle)) return true;
   const double yielding = std::max(options_.yielding_deceleration, -vehicle.acceleration);
   return conflict.stops_before > yielding;
 }

@@ -49,7 +49,8 @@ struct CarefulDriverOptions {
 ///    cut-out reveals it): TTC at most `lead_time`, unless the own braking will do, or it brakes
 ///    harder than `lead_deceleration`;
 ///  - merge, crossing: they meet within `look_ahead` or miss each other by less than `arrival_gap`,
-///    and the other can no longer stop before the corridor with `yielding_deceleration`;
+///    and the other can no longer stop before the corridor with `yielding_deceleration`, or is no
+///    car but a pedestrian or a bicycle;
 ///  - oncoming: the same, with its box less than 0.7 m from the corridor.
 /// Evidence that holds for `evaluation_time` is a perceived risk; `delay` later the brake goes down
 /// within `ramp_time`. It is held until the vehicle is clear: to standstill, or until they would
@@ -77,6 +78,7 @@ class CarefulDriver final : public ReferenceDriver {
   };
 
   Clock& clockOf(const SeenVehicle& vehicle, const Conflict& conflict, double time);
+  static bool isSmall(const SeenVehicle& vehicle);
   bool isRisk(const OwnMotion& own, const Conflict& conflict, const SeenVehicle& vehicle,
               const Clock& clock, bool nearest) const;
   bool isDue(const Clock& clock, double time) const;

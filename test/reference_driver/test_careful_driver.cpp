@@ -101,6 +101,17 @@ TEST(CarefulDriver, BrakesForACrossingCarThatCanNoLongerYield) {
   EXPECT_FALSE(driven(ownAt(8.0), {carAcross(10.0, 32.0, 8.0)}, 3.0).brake_time.has_value());
 }
 
+// It could stop within half a meter, and is not expected to. It enters the corridor after 2.1 m.
+TEST(CarefulDriver, BrakesForAPedestrianWhoCouldStillStop) {
+  SeenVehicle walker = carAcross(30.0, 3.3, 1.1);
+  walker.half_along = 0.2;
+  walker.half_across = 0.3;
+  const Course course = driven(ownAt(8.0), {walker}, 4.0);
+  ASSERT_TRUE(course.brake_time.has_value());
+  EXPECT_LT(*course.brake_time, 1.3);
+  EXPECT_FALSE(course.touched);
+}
+
 TEST(CarefulDriver, LeavesACrossingCarAloneThatYields) {
   const auto yielding = [](double time, std::vector<SeenVehicle>& others) {
     // 3 m/s^2 from 8 m/s: 10.7 m, of 20 - 3.15; 1.5 would do after 0.7 s.
