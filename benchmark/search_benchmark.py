@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Print what `cdiff search` finds beside random draws of the same budget, as "figure value unit goal".
 
-    scripts/benchmark search [SCENARIO] [--budget N] [--seeds N] [--jobs N] [--mode MODE] [--ego EGO] [--json FILE]
+    scripts/benchmark search [SCENARIO] [--budget N] [--seeds N] [--first N] [--jobs N] [--mode MODE] [--ego EGO]
+                             [--cbv-planner NAME] [--json FILE]
 
 Each seed is searched by both methods. A figure with `difference` is evolution minus random, a mean over the pairs.
 """
@@ -21,8 +22,8 @@ def search(cdiff, options, method, seed, results):
     """Number of cases that were found, and the largest score."""
     command = [cdiff, "search", options.scenario, "--budget", str(options.budget), "--method", method, "--seed", str(seed),
                "--mode", options.mode, "--results", results, "--jobs", str(options.jobs)]
-    if options.ego:
-        command += ["--ego", options.ego]
+    for option, value in (("--ego", options.ego), ("--cbv-planner", options.cbv_planner)):
+        command += [option, value] if value else []
     ended = subprocess.run(command, capture_output=True, text=True)
     if ended.returncode != 0:
         sys.exit(f"cdiff search ended with {ended.returncode}: {ended.stderr[-2000:]}")
@@ -53,14 +54,16 @@ def main():
     parser.add_argument("scenario", nargs="?", default="t_junction_straight", help="shipped name or file")
     parser.add_argument("--budget", type=int, default=40, help="cases of a search")
     parser.add_argument("--seeds", type=int, default=5, help="pairs of searches")
+    parser.add_argument("--first", type=int, default=1, help="first seed")
     parser.add_argument("--jobs", type=int, default=2, help="sessions at a time")
     parser.add_argument("--mode", default="safety_critical", help="mode of the CBVs")
     parser.add_argument("--ego", default="", help="as cdiff search takes it; the scenario's without")
+    parser.add_argument("--cbv-planner", default="", help="planner of the CBVs; the scenario's without")
     parser.add_argument("--json", help="also write the figures to this file")
     options = parser.parse_args()
     cdiff = str(Path(os.environ.get("BUILD", "build")) / "devel/lib/e2e_cdiff/cdiff")
     pairs = []
-    for seed in range(1, options.seeds + 1):
+    for seed in range(options.first, options.first + options.seeds):
         with tempfile.TemporaryDirectory() as scratch:
             pairs.append({method: search(cdiff, options, method, seed, str(Path(scratch) / method)) for method in METHODS})
         print(f"seed {seed}: {pairs[-1]}", file=sys.stderr, flush=True)

@@ -2,9 +2,14 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "cli/batch_engine.h"
 
+#include <atomic>
+#include <chrono>
 #include <iostream>
+#include <thread>
 
 #include "core/file.h"
+#include "core/guarded_process.h"
+#include "core/lease.h"
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
@@ -50,9 +55,9 @@ void cancelAfter(const std::string& name, const core::InputError& error) {
   }
 }
 
-std::string goOnText(const std::string& program, const fs::path& results) {
-  const std::string command = program + " --results " + results.string();
-  return "to follow them again: " + command + " --attach\nto end them: " + command + " --cancel\n";
+std::string goOnText(const EngineArguments& arguments, const fs::path& results) {
+  const std::string end = " --results " + results.string() + "\n";
+  return arguments.go_on + end + "to end them: " + arguments.command + " --cancel" + end;
 }
 
 /// Writes the script of the jobs, prints it and the commands that would submit it.
@@ -71,8 +76,9 @@ void printJobs(const evaluation::Executor& executor, const fs::path& results, in
 
 /// Writes the script and submits it, all or nothing. Throws InputError where Slurm refuses.
 void submitJobs(const evaluation::Executor& executor, const fs::path& results,
-                const EngineArguments& arguments, const evaluation::SlurmOptions& options) {
+                const EngineArguments& arguments) {
   if (executor.queue().empty()) return;
+  const auto options = evaluation::slurmOptionsOf(arguments.slurm);
   evaluation::SlurmBatch batch = batchOf(executor, results, arguments.jobs);
   batch.largest_array = evaluation::requireSlurm();
   writeScript(batch, options);
@@ -88,24 +94,24 @@ void submitJobs(const evaluation::Executor& executor, const fs::path& results,
   }
   evaluation::writeJobName(results, batch.name, ids);
   std::cerr << "submitted " << core::joinText(ids, ", ") << " as " << batch.name << "\n"
-            << goOnText(arguments.command, results);
+            << goOnText(arguments, results);
 }
 
 /// Waits for the jobs of a batch whose plan lists these runs; says what goes on, also after a stop
 /// signal. Gives whether no job is left that works on the plan.
 bool followJobs(const std::vector<std::string>& ids, const fs::path& results,
-                const EngineArguments& arguments, const evaluation::SlurmOptions& options,
-                BatchProgress& progress) {
+                const EngineArguments& arguments, BatchProgress& progress,
+                const std::atomic<bool>& stop) {
   if (ids.empty()) return true;
   evaluation::SlurmWait wait;
   wait.results = results;
   wait.job_name = evaluation::readJobName(results);
-  wait.poll = options.poll;
+  wait.poll = evaluation::slurmOptionsOf(arguments.slurm).poll;
   wait.ended = [&](const evaluation::RunRecord& record) { progress.ended(record, false); };
   wait.unanswered = [] { std::cerr << "Slurm does not answer; waiting for it\n"; };
-  const auto open = evaluation::waitForJobs(ids, wait, core::catchStopSignals());
-  if (core::stopRequested()) {
-    std::cerr << "the jobs go on without this command\n" << goOnText(arguments.command, results);
+  const auto open = evaluation::waitForJobs(ids, wait, stop);
+  if (stop) {
+    std::cerr << "the jobs go on without this command\n" << goOnText(arguments, results);
     return false;
   }
   if (!open.empty()) {
@@ -116,26 +122,57 @@ bool followJobs(const std::vector<std::string>& ids, const fs::path& results,
   return true;
 }
 
-/// On another engine than this process.
+/// Between two looks at the leases of another host.
+constexpr std::chrono::milliseconds kLeaseLook{200};
+
+/// Throws InputError where jobs of the folder are queued or running, or may be.
+void requireNoJobs(const fs::path& results) {
+  if (!evaluation::hasJobName(results)) return;
+  const std::string name = evaluation::readJobName(results);
+  if (!core::programInPath("squeue")) {
+    std::cerr << "squeue is not here: whether jobs of the name " << name
+              << " are queued is not known\n";
+    return;
+  }
+  const auto tasks = evaluation::queuedTasks(name);
+  if (tasks && *tasks == 0) return;
+  throw core::InputError(
+      "'" + results.string() + "': " +
+      (tasks ? "tasks of the name " + name + " wait or run on the cluster (" +
+                   std::to_string(*tasks) + ")"
+             : "Slurm does not say whether tasks of the name " + name + " wait or run") +
+      "; wait until they have ended, or end them (--cancel)");
+}
+
+/// Throws InputError where the holder of a lease gives signs of life.
+void requireSilent(const fs::path& results, const std::string& id,
+                   const core::LeaseHolder& holder) {
+  if (!holder.is_alive) return;
+  throw core::InputError("run '" + id + "' in '" + results.string() + "' is under way by " +
+                         holder.text + "; wait until it has ended, or end it (--cancel)");
+}
+
+/// On another engine than this process. A stop that comes while jobs are submitted takes effect
+/// once all are: between two arrays it would leave jobs that nobody knows.
 std::vector<evaluation::RunRecord> executeElsewhere(const EngineArguments& arguments,
                                                     const std::vector<evaluation::PlannedRun>& plan,
                                                     const evaluation::ExecutorOptions& options,
-                                                    bool attach, BatchProgress& progress) {
-  const auto slurm = evaluation::slurmOptionsOf(arguments.slurm);
-  core::catchStopSignals();  // a stop between two arrays would leave jobs that nobody knows
+                                                    bool attach, BatchProgress& progress,
+                                                    const std::atomic<bool>& stop) {
   evaluation::Executor executor(plan, options);
   if (attach) {
     executor.join();
   } else {
     executor.announce();
     if (arguments.prints() && !executor.queue().empty()) {
-      printJobs(executor, options.results, arguments.jobs, slurm);
+      printJobs(executor, options.results, arguments.jobs,
+                evaluation::slurmOptionsOf(arguments.slurm));
       return executor.collect();
     }
-    if (core::stopRequested()) return executor.collect();
-    submitJobs(executor, options.results, arguments, slurm);
+    if (stop) return executor.collect();
+    submitJobs(executor, options.results, arguments);
   }
-  if (followJobs(executor.queue(), options.results, arguments, slurm, progress)) executor.close();
+  if (followJobs(executor.queue(), options.results, arguments, progress, stop)) executor.close();
   return executor.collect();
 }
 
@@ -168,7 +205,8 @@ void requireEngine(const EngineArguments& arguments) {
 std::vector<evaluation::RunRecord> executeOn(const EngineArguments& arguments,
                                              const std::vector<evaluation::PlannedRun>& plan,
                                              evaluation::ExecutorOptions options, bool attach,
-                                             BatchProgress& progress) {
+                                             BatchProgress& progress,
+                                             const std::atomic<bool>& stop) {
   if (!arguments.fresh) options.server = {"serve"};
   options.jobs = arguments.jobs;
   options.lease.program = arguments.command;
@@ -176,21 +214,25 @@ std::vector<evaluation::RunRecord> executeOn(const EngineArguments& arguments,
   options.ended = [&](const evaluation::RunRecord& record) { progress.ended(record, false); };
   options.kept = [&](const evaluation::RunRecord& record) { progress.ended(record, true); };
   auto records = arguments.isLocal() && !attach
-                     ? evaluation::executeRuns(plan, options, core::catchStopSignals())
-                     : executeElsewhere(arguments, plan, options, attach, progress);
+                     ? evaluation::executeRuns(plan, options, stop)
+                     : executeElsewhere(arguments, plan, options, attach, progress, stop);
   progress.finish();
   return records;
 }
 
 void requireNoWorker(const fs::path& results) {
+  requireNoJobs(results);
   core::LeaseFolder leases(evaluation::leaseFolder(results), {});
-  leases.removeLeftBehind();
-  for (const auto& [id, holder] : leases.holders()) {
-    throw core::InputError(
-        "run '" + id + "' in '" + results.string() + "' is under way by " + holder +
-        "; wait until it has ended, end it (--cancel), or, if that process is gone, "
-        "delete '" +
-        evaluation::leaseFolder(results).string() + "'");
+  for (bool told = false;; told = true) {
+    leases.removeLeftBehind();
+    const auto holders = leases.holders();
+    if (holders.empty()) return;
+    for (const auto& [id, holder] : holders) requireSilent(results, id, holder);
+    if (!told) {
+      std::cerr << "waiting at most " << core::formatNumber(core::LeaseTerms().expiry)
+                << " s for a sign of " << holders.begin()->second.text << "\n";
+    }
+    std::this_thread::sleep_for(kLeaseLook);
   }
 }
 

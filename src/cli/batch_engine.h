@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,11 +18,13 @@ namespace cdiff::cli {
 
 /// Where sessions run, as a command line says it.
 struct EngineArguments {
-  std::string command = "cdiff evaluate";  ///< that goes on with jobs which outlive it
-  std::string engine = "local";            ///< local | slurm | print
-  std::vector<std::string> slurm;          ///< texts of --slurm
-  int jobs = 1;                            ///< sessions at a time; on a cluster in each task
-  bool fresh = false;                      ///< the program starts afresh for each session
+  std::string command = "cdiff evaluate";  ///< that is run
+  /// How its user goes on with jobs that outlive it; " --results FOLDER" follows.
+  std::string go_on = "to follow them again: cdiff evaluate --attach";
+  std::string engine = "local";    ///< local | slurm | print
+  std::vector<std::string> slurm;  ///< texts of --slurm
+  int jobs = 1;                    ///< sessions at a time; on a cluster in each task
+  bool fresh = false;              ///< the program starts afresh for each session
 
   bool isLocal() const { return engine == "local"; }
   bool prints() const { return engine == "print"; }
@@ -35,14 +38,18 @@ void requireEngine(const EngineArguments& arguments);
 
 /// Runs a plan and gives the record of every planned run, in their order. `options` say what is run
 /// and who is told; program, server and jobs are set by the engine. `attach`: the jobs of the plan
-/// are on the cluster already. The engine `print` writes plan and script, prints the script, and
-/// runs nothing. Throws InputError where Slurm refuses; nothing is queued then.
+/// are on the cluster already. `stop`: once true, no run is started here; jobs on a cluster go on.
+/// The engine `print` writes plan and script, prints the script, and runs nothing. Throws
+/// InputError where Slurm refuses; nothing is queued then.
 std::vector<evaluation::RunRecord> executeOn(const EngineArguments& arguments,
                                              const std::vector<evaluation::PlannedRun>& plan,
                                              evaluation::ExecutorOptions options, bool attach,
-                                             BatchProgress& progress);
+                                             BatchProgress& progress,
+                                             const std::atomic<bool>& stop);
 
-/// Throws InputError where a worker is at work on a plan that is to be replaced.
+/// Throws InputError where a worker is at work on a plan that is to be replaced, or a job for it is
+/// queued. What a worker of another host holds is watched: it counts as dead after 120 s without a
+/// sign.
 void requireNoWorker(const std::filesystem::path& results);
 
 /// Ends the jobs of a result folder; what they had under way is returned to the plan.

@@ -168,6 +168,7 @@ void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool
       if (fs::is_directory(output.path() / name)) core::OutputFolder(output.path() / name).clear();
     }
     output.remove({kBatchFolders.begin(), kBatchFolders.end()});
+    output.remove({evaluation::kLeftBehindFolder});
     if (fs::is_directory(output.path() / kJobFolder)) removeJobFolder(output);
   }
   const fs::path file = output.path() / kMatrixFile;
@@ -221,7 +222,8 @@ std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
   options.retries = static_cast<int>(matrix.retries);
   options.resume = arguments.resume;
   options.chosen = isNow;
-  return executeOn(arguments.engine, plan, options, arguments.attach, progress);
+  return executeOn(arguments.engine, plan, options, arguments.attach, progress,
+                   core::catchStopSignals());
 }
 
 /// Without the runs whose levels do not fit together, or with --strict refused for them.

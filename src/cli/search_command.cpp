@@ -85,14 +85,15 @@ evaluation::SearchRequest requestOf(const SearchArguments& arguments) {
 /// How the engine runs a batch of the search.
 std::vector<RunRecord> runBatch(const std::vector<evaluation::PlannedRun>& plan,
                                 const SearchArguments& arguments,
-                                const evaluation::SearchOptions& search, const fs::path& results) {
+                                const evaluation::SearchOptions& search, const fs::path& results,
+                                const std::atomic<bool>& stop) {
   BatchProgress progress(plan, arguments.engine.jobs);
   evaluation::ExecutorOptions options;
   options.results = results;
   options.timeout = search.timeout;
   options.retries = static_cast<int>(search.retries);
   options.resume = arguments.resume;
-  return executeOn(arguments.engine, plan, options, false, progress);
+  return executeOn(arguments.engine, plan, options, false, progress, stop);
 }
 
 int exitCodeOf(const evaluation::Search& search, const SearchArguments& arguments) {
@@ -106,10 +107,11 @@ int exitCodeOf(const evaluation::Search& search, const SearchArguments& argument
 
 void advanceAll(evaluation::Search& search, const evaluation::SearchRequest& request,
                 const SearchArguments& arguments, const fs::path& results) {
+  const std::atomic<bool>& stop = core::catchStopSignals();
   const auto run = [&](const std::vector<evaluation::PlannedRun>& plan) {
-    return runBatch(plan, arguments, request.options, results);
+    return runBatch(plan, arguments, request.options, results, stop);
   };
-  while (search.advance(results, run)) {
+  while (!stop && search.advance(results, run)) {
     std::cerr << evaluation::searchText(search.cases(), search.asksCarefulDriver()) << " ("
               << search.cases().size() << " of " << request.budget << ")\n";
   }
@@ -150,6 +152,7 @@ int searchScenario(const SearchArguments& arguments) {
 void addSearchCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<SearchArguments>();
   arguments->engine.command = "cdiff search";
+  arguments->engine.go_on = "to go on once they have ended: the same command with --resume";
   evaluation::SearchRequest& request = arguments->request;
   CLI::App* command = program.add_subcommand(
       "search", "Search a scenario for the sessions that are worst for its ego");

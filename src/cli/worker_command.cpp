@@ -40,12 +40,15 @@ int work(const WorkerArguments& arguments) {
   options.lease.expiry = arguments.expiry;
   options.waits = arguments.wait;
   options.compares_inputs = true;
-  options.ended = [](const evaluation::RunRecord& record) {
+  bool refused = false;
+  options.ended = [&](const evaluation::RunRecord& record) {
+    refused = refused || (record.attempts == 0 && record.exit_code == ExitCode::kBadInput);
     std::cerr << record.id << " " << record.status
               << (record.cause.empty() ? "" : " (" + record.cause + ")") << "\n";
   };
   evaluation::runPlanned(ids, options, core::catchStopSignals());
-  return core::stopRequested() ? ExitCode::kReturned : ExitCode::kPassed;
+  if (core::stopRequested()) return ExitCode::kReturned;
+  return refused ? ExitCode::kBadInput : ExitCode::kPassed;
 }
 
 }  // namespace
@@ -71,8 +74,8 @@ void addWorkerCommand(CLI::App& program, int& exit_code) {
                     "Wait for runs that other workers have, and take over what they leave behind");
   command->footer(
       "Exit codes: 0 nothing is left to do here, whatever the verdicts; 75 interrupted, and the "
-      "run "
-      "returned; 3 wrong input, another build or other files than planned.");
+      "run returned; 3 wrong input, another build, or a run whose files are not what was planned: "
+      "the other runs went on.");
   command->callback([arguments, &exit_code] { exit_code = work(*arguments); });
 }
 

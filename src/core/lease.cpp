@@ -33,6 +33,12 @@ FileDescriptor openLease(const fs::path& file) {
   return FileDescriptor(::open(file.c_str(), kFlags));
 }
 
+/// Whether a process of this host has signed the lease; one that is gone counts as such.
+bool isOfThisHost(const std::map<std::string, std::string>& facts) {
+  const auto boot = facts.find("boot");
+  return boot != facts.end() && boot->second == bootId();
+}
+
 }  // namespace
 
 Lease::~Lease() {
@@ -88,12 +94,10 @@ bool LeaseFolder::isLeftBehind(const fs::path& file) {
   const FileDescriptor descriptor = openLease(file);
   if (!descriptor) return false;  // released just now
   const auto facts = holderFacts(descriptor.get());
-  const auto boot = facts.find("boot");
-  const bool here = boot != facts.end() && boot->second == bootId();
-  if (here) return ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0;
+  if (isOfThisHost(facts)) return ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0;
   Seen& seen = seen_[file.filename().string()];
   const auto now = std::chrono::steady_clock::now();
-  if (seen.facts != facts) seen = {facts, now};
+  if (seen.facts != facts) seen = {facts, now, !seen.facts.empty()};
   return std::chrono::duration<double>(now - seen.since).count() > terms_.expiry;
 }
 
@@ -130,10 +134,13 @@ std::shared_ptr<const Lease> LeaseFolder::claim(const std::string& name) {
   }
   const std::size_t next = before.empty() ? 1 : before.rbegin()->first + 1;
   const fs::path file = folder_ / (name + "." + std::to_string(next));
+  const bool foreign = std::any_of(before.begin(), before.end(), [this](const auto& left) {
+    return seen_.count(left.second.filename().string()) != 0;
+  });
   FileDescriptor descriptor = place(file);
   if (!descriptor) return nullptr;
   // NOLINTNEXTLINE(modernize-make-shared): the constructor is private
-  const std::shared_ptr<const Lease> lease(new Lease(file, std::move(descriptor)));
+  const std::shared_ptr<const Lease> lease(new Lease(file, std::move(descriptor), foreign));
   const Generations after = list()[name];
   for (const auto& [generation, other] : after) {
     const bool known = generation == next || before.count(generation) != 0;
@@ -146,12 +153,19 @@ std::shared_ptr<const Lease> LeaseFolder::claim(const std::string& name) {
   return lease;
 }
 
-std::map<std::string, std::string> LeaseFolder::holders() {
-  std::map<std::string, std::string> found;
+/// Of a file that isLeftBehind() has looked at.
+bool LeaseFolder::isAlive(const fs::path& file) const {
+  const auto seen = seen_.find(file.filename().string());
+  return seen == seen_.end() || seen->second.changed;
+}
+
+std::map<std::string, LeaseHolder> LeaseFolder::holders() {
+  std::map<std::string, LeaseHolder> found;
   for (const auto& [name, generations] : list()) {
     const fs::path& file = generations.rbegin()->second;
     const FileDescriptor descriptor = openLease(file);
-    if (descriptor && !isLeftBehind(file)) found[name] = holderText(holderFacts(descriptor.get()));
+    if (descriptor && !isLeftBehind(file))
+      found[name] = {holderText(holderFacts(descriptor.get())), isAlive(file)};
   }
   return found;
 }

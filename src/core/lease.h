@@ -40,15 +40,26 @@ class Lease {
 
   /// Whether no other process has taken the work over, as one may that saw no beat for too long.
   bool isHeld() const;
+  /// Whether it was taken over from a process of another host, which may only have stood still.
+  bool isFromAnotherHost() const { return from_another_host_; }
 
  private:
   friend class LeaseFolder;
-  Lease(std::filesystem::path file, FileDescriptor descriptor)
-      : file_(std::move(file)), descriptor_(std::move(descriptor)) {}
+  Lease(std::filesystem::path file, FileDescriptor descriptor, bool from_another_host)
+      : file_(std::move(file)),
+        descriptor_(std::move(descriptor)),
+        from_another_host_(from_another_host) {}
   void beat(std::size_t number) const;
 
   std::filesystem::path file_;
   FileDescriptor descriptor_;  ///< locked
+  bool from_another_host_;
+};
+
+/// Who holds a lease that is not left behind.
+struct LeaseHolder {
+  std::string text;       ///< "'cdiff worker', process 12 on host h, since 2026-01-31 14:05:09"
+  bool is_alive = false;  ///< of this host, or its file has changed since it was first seen
 };
 
 /// The folder of leases NAME.GENERATION, as one process sees it. No clock of another host counts:
@@ -66,9 +77,8 @@ class LeaseFolder {
   /// The lease of a name; null where another process has it. Makes the folder where it is missing.
   /// Throws InputError naming the file that cannot be written.
   std::shared_ptr<const Lease> claim(const std::string& name);
-  /// Who holds leases that are not left behind, as "'cdiff worker', process 12 on host h, since
-  /// 2026-01-31 14:05:09", by name of the work.
-  std::map<std::string, std::string> holders();
+  /// Who holds leases that are not left behind, by name of the work.
+  std::map<std::string, LeaseHolder> holders();
   /// Removes what was left behind, and the folder where it is empty then.
   void removeLeftBehind();
 
@@ -76,11 +86,13 @@ class LeaseFolder {
   struct Seen {
     std::map<std::string, std::string> facts;
     std::chrono::steady_clock::time_point since;
+    bool changed = false;  ///< since it was first seen
   };
   using Generations = std::map<std::size_t, std::filesystem::path>;
 
   std::map<std::string, Generations> list() const;
   bool isLeftBehind(const std::filesystem::path& file);
+  bool isAlive(const std::filesystem::path& file) const;
   int placeOnce(const std::filesystem::path& file, FileDescriptor& descriptor) const;
   FileDescriptor place(const std::filesystem::path& file) const;
   void keepBeating();

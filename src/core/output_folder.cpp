@@ -243,6 +243,11 @@ fs::path OutputFolder::path() const {
   const fs::path now =
       fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor_.get()), error);
   if (!error && ::stat(now.c_str(), &named) == 0 && isSame(held, named)) return now;
+  // Another host may have moved a folder of a shared disk: then it only looks deleted from here.
+  const bool looks_deleted = !error && endsWith(now.string(), " (deleted)");
+  if (looks_deleted && ::fstat(descriptor_.get(), &held) == 0 && held.st_nlink > 0)
+    throw Error("another folder has taken the place of '" + path_.string() +
+                "'; nothing more is written into it");
   makeAgain();
   return path_;
 }

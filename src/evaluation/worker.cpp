@@ -84,6 +84,21 @@ void describeEnd(RunRecord& record, const core::ProcessEnd& end, const fs::path&
   record.measures = facts.measures;
 }
 
+/// Gives a run a new folder with its scenario and its record, and moves the one that a silent host
+/// has, whose session may still write into it, to kLeftBehindFolder.
+void setAside(const fs::path& results, const std::string& id) {
+  const fs::path old = runFolder(results, id);
+  core::OutputFolder aside(core::OutputFolder(results).subfolder(kLeftBehindFolder));
+  std::string name = id;
+  for (int i = 2; fs::exists(aside.path() / name); ++i) name = id + "." + std::to_string(i);
+  const std::string scenario = core::readFile(old / "scenario.yaml", "scenario");
+  const std::string record = core::readFile(old / "record.json", "record");
+  fs::rename(old, aside.subfolder(name));
+  core::OutputFolder fresh(old);
+  fresh.write("scenario.yaml", scenario);
+  fresh.write("record.json", record);
+}
+
 /// Runs are addressed by their place in the list of ids.
 class Worker {
  public:
@@ -134,7 +149,7 @@ class Worker {
   }
 
   std::optional<core::ProcessJob> start(std::size_t index) {
-    if (held_.count(index) == 0 && !claim(index)) return std::nullopt;
+    if (held_.count(index) == 0 ? !claim(index) : isLost(index)) return std::nullopt;
     const fs::path folder = folderOf(index);
     core::OutputFolder output(folder);
     output.remove({"summary.json", "log.txt"});
@@ -144,6 +159,14 @@ class Worker {
                             {"run", (folder / "scenario.yaml").string(), "--quiet", "--results",
                              folder.string(), "--overwrite"},
                             output.claim("log.txt")};
+  }
+
+  /// Whether another worker has taken over a run between two of its attempts here.
+  bool isLost(std::size_t index) {
+    if (held_.at(index).lease->isHeld()) return false;
+    held_.erase(index);
+    taken_.push_back(index);
+    return true;
   }
 
   /// Whether the run is ours to do now. What another worker has waits in `taken_`.
@@ -156,26 +179,44 @@ class Worker {
     }
     const RunRecord record = recordAt(index);  // as it is now that nobody else writes it
     if (isDone(record)) return false;
-    core::FolderLock::removeLeftBehind(folderOf(index));  // of a session that was killed
-    if (options_.compares_inputs) requireInputs(index, record);
-    held_[index] = {std::move(lease), recordOf({record.id, record.factors, "",
-                                                record.scenario_sha256, record.inputs})};
+    if (lease->isFromAnotherHost())
+      setAside(options_.results, ids_[index]);
+    else
+      core::FolderLock::removeLeftBehind(folderOf(index));  // of a session that was killed
+    RunRecord next =
+        recordOf({record.id, record.factors, "", record.scenario_sha256, record.inputs});
+    if (options_.compares_inputs && refusesInputs(index, next)) return false;
+    held_[index] = {std::move(lease), std::move(next)};
     return true;
   }
 
-  void requireInputs(std::size_t index, const RunRecord& record) {
-    const fs::path file = folderOf(index) / "scenario.yaml";
-    const std::string text = core::readFile(file, "scenario");
-    if (core::sha256(text) != record.scenario_sha256)
-      throw core::InputError("'" + file.string() +
-                             "' is not what was planned; plan it again with "
-                             "cdiff evaluate --resume");
-    const auto now = hasher_.hashes(session::loadScenario(file.string()));
-    const std::string changed = changedInputs(record.inputs, now);
-    if (changed.empty()) return;
-    throw core::InputError("run '" + ids_[index] + "' was planned with other files: " + changed +
-                           " changed; expected the same on every host: plan it again with "
-                           "cdiff evaluate --resume");
+  /// Whether the run's scenario or files are not what was planned. Then its record says so, and
+  /// the other runs go on.
+  bool refusesInputs(std::size_t index, RunRecord& record) {
+    record.cause = changedText(folderOf(index) / "scenario.yaml", record);
+    if (record.cause.empty()) return false;
+    record.status = "error";
+    record.exit_code = ExitCode::kBadInput;
+    core::writeOwnFile(folderOf(index) / "record.json", recordJson(record));
+    if (options_.ended) options_.ended(record);
+    return true;
+  }
+
+  /// What differs from what was planned; empty where nothing does.
+  std::string changedText(const fs::path& file, const RunRecord& record) {
+    const std::string again = "; plan it again with cdiff evaluate --resume";
+    try {
+      const std::string text = core::readFile(file, "scenario");
+      if (core::sha256(text) != record.scenario_sha256)
+        return "'" + file.string() + "' is not what was planned" + again;
+      const auto now = hasher_.hashes(session::loadScenario(file.string()));
+      const std::string changed = changedInputs(record.inputs, now);
+      if (changed.empty()) return "";
+      return "it was planned with other files: " + changed +
+             " changed; expected the same on every host" + again;
+    } catch (const core::InputError& error) {
+      return std::string(error.what()) + again;
+    }
   }
 
   /// Takes the end of an attempt; returns whether the run gets another.

@@ -28,7 +28,7 @@ struct WorkerOptions {
   double grace = 20.0;            ///< to end in after an interrupt [s]
   core::LeaseTerms lease = {"cdiff evaluate"};  ///< what others see of it
   bool waits = false;            ///< for runs that others have, to take over what they leave behind
-  bool compares_inputs = false;  ///< each run's scenario and files with the hashes in its record
+  bool compares_inputs = false;  ///< each run's scenario and files with its record's hashes
   /// Called after each run that has a result from now on, its own or that of another worker.
   std::function<void(const RunRecord&)> ended = {};
 };
@@ -36,13 +36,18 @@ struct WorkerOptions {
 /// Folder of a batch's leases: RESULTS/.leases.
 std::filesystem::path leaseFolder(const std::filesystem::path& results);
 
+/// Folder of a batch for what hosts that fell silent had of runs which others took over: their
+/// sessions may still write there, and nothing reads it.
+inline constexpr const char* kLeftBehindFolder = ".left_behind";
+
 /// Folder of a run: RESULTS/runs/ID.
 std::filesystem::path runFolder(const std::filesystem::path& results, const std::string& id);
 
 /// Runs planned runs in their order, each under a lease and only where its record says not_run or
 /// interrupted. So workers of any number and host may share a plan, and a worker that starts again
 /// goes on where it was. Once `stop` is true no run is started and those under way are interrupted.
-/// Throws InputError naming a record that is absent or damaged, or inputs that have changed.
+/// A run whose inputs have changed ends with an error in its record. Throws InputError naming a
+/// record that is absent or damaged.
 void runPlanned(const std::vector<std::string>& ids, const WorkerOptions& options,
                 const std::atomic<bool>& stop);
 

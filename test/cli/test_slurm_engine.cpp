@@ -7,7 +7,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 
 #include "cli/evaluate_command.h"
 #include "cli/wall_clock.h"
@@ -51,6 +54,24 @@ std::vector<pid_t> treeOf(pid_t root) {
     }
   }
   return tree;
+}
+
+/// Slurm's process that watches the worker of a node, and is no descendant of the node's; 0 where
+/// none works on the results.
+pid_t stepOn(const std::string& node, const std::string& results) {
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const auto content = [&](const char* name) {
+      std::ifstream file(entry.path() / name, std::ios::binary);
+      return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    const std::string words = content("cmdline");
+    const bool worker = words.find(std::string("worker\0", 7) + results) != std::string::npos;
+    if (!worker || content("environ").find("SLURMD_NODENAME=" + node) == std::string::npos)
+      continue;
+    const std::string stat = content("stat");
+    return std::stoi(core::splitText(stat.substr(stat.rfind(')') + 2), ' ').at(1));
+  }
+  return 0;
 }
 
 class SlurmEngine : public test::EvaluateCommand {
@@ -114,14 +135,25 @@ class SlurmEngine : public test::EvaluateCommand {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
-  /// By default Slurm holds a task back for two minutes when it queues it again.
+  /// How many tasks Slurm has queued again after it had started them.
+  std::size_t restartedTasks() const {
+    shell("scontrol show job -o | grep -c 'Restarts=[1-9]'");
+    return std::stoul("0" + core::readFile(folder("shell"), "count"));
+  }
+  /// By default Slurm holds a task back for two minutes when it queues it again. Expects that it
+  /// had to queue one again.
   int waitWithoutDelays(test::ProgramRun& driver) const {
-    while (!driver.waitForEnd(1.0)) {
+    constexpr int kMostSeconds = 300;
+    std::size_t restarted = 0;
+    for (int i = 0; i < kMostSeconds && !driver.waitForEnd(1.0); ++i) {
+      restarted = std::max(restarted, restartedTasks());
       shell(
           "for job in $(squeue -h -r -t PD -o %i); do scontrol update JobId=$job StartTime=now; "
           "done");
     }
-    return driver.exitCode();
+    EXPECT_GT(std::max(restarted, restartedTasks()), 0U) << "no task was running";
+    EXPECT_TRUE(driver.ended()) << "it did not end within " << kMostSeconds << " s\n" << output();
+    return driver.ended() ? driver.exitCode() : -1;
   }
   bool started_ = false;
 };
@@ -142,8 +174,12 @@ TEST_F(SlurmEngine, LosesNothingWhenANodeIsKilled) {
   const std::string results = folder("results");
   test::ProgramRun driver(CDIFF_PROGRAM, onSlurm(file, results), folder("output"));
   waitForFirst(driver, results);
+  pid_t step = 0;
+  while ((step = stepOn("n1", results)) == 0) ASSERT_FALSE(driver.waitForEnd(0.05)) << output();
   const int node = std::stoi(core::readFile(folder("cluster") + "/n1.pid", "node"));
-  for (const pid_t process : treeOf(node)) ::kill(process, SIGKILL);
+  for (const pid_t root : {node, step}) {
+    for (const pid_t process : treeOf(root)) ::kill(process, SIGKILL);
+  }
   fs::remove(folder("cluster") + "/n1.pid");
   EXPECT_EQ(waitWithoutDelays(driver), 0) << output();
   EXPECT_EQ(lines(fs::path(results) / "runs.csv"), 9U);
@@ -155,6 +191,8 @@ TEST_F(SlurmEngine, LosesNothingWhenItsTasksArePreempted) {
   const std::string results = folder("results");
   test::ProgramRun driver(CDIFF_PROGRAM, onSlurm(file, results), folder("output"));
   waitForFirst(driver, results);
+  while (stepOn("n1", results) == 0 && stepOn("n2", results) == 0)
+    ASSERT_FALSE(driver.waitForEnd(0.05)) << output();
   ASSERT_EQ(shell("sbatch -p high -N 2 --exclusive -o /dev/null --wrap true"), 0);
   EXPECT_EQ(waitWithoutDelays(driver), 0) << output();
   expectSameAsLocal(file, results);
@@ -186,8 +224,10 @@ TEST_F(SlurmEngine, GoesOnWithoutItsCommandWhichMayComeBack) {
     driver.signal(SIGINT);
     EXPECT_EQ(driver.wait(), 130);
   }
-  EXPECT_EQ(cdiff({"evaluate", file, "--results", results, "--overwrite"}), 3);
-  expectOutput("is under way by 'cdiff worker', process ");
+  for (const char* option : {"--overwrite", "--resume"}) {
+    EXPECT_EQ(cdiff({"evaluate", file, "--results", results, option}), 3) << option;
+    expectOutput("wait or run on the cluster (");
+  }
   ASSERT_EQ(cdiff({"evaluate", "--results", results, "--attach", "--slurm", "poll=0.5"}), 0)
       << output();
   expectSameAsLocal(file, results);
@@ -202,6 +242,53 @@ TEST_F(SlurmEngine, RefusalsAreOneSentenceAndLeaveNothingQueued) {
   expectOutput("invalid partition");
   ASSERT_EQ(shell("squeue -h"), 0);
   EXPECT_EQ(core::readFile(folder("shell"), "queue"), "");
+}
+
+/// A cluster of four scripts: sbatch takes until the file `go` is there, and its task stays queued
+/// as long as the file `queued` is.
+class PlayedSlurm : public test::EvaluateCommand {
+ protected:
+  PlayedSlurm() : path_(std::getenv("PATH")) {
+    fs::create_directories(folder("bin"));
+    play("sbatch", "touch $D/queued $D/asked\nwhile [ ! -e $D/go ]; do sleep 0.01; done\necho 7");
+    play("squeue", "[ ! -e $D/queued ] || echo 7_0");
+    play("scancel", "rm -f $D/queued");
+    play("scontrol", "echo 'MaxArraySize = 1001'");
+    ::setenv("PATH", (folder("bin") + ":" + path_).c_str(), 1);
+  }
+  ~PlayedSlurm() override { ::setenv("PATH", path_.c_str(), 1); }
+  void play(const std::string& name, const std::string& script) const {
+    const fs::path file = fs::path(folder("bin")) / name;
+    std::ofstream(file) << "#!/bin/sh\nD='" << folder("") << "'\n" << script << "\n";
+    fs::permissions(file, fs::perms::owner_all);
+  }
+  std::string path_;
+};
+
+TEST_F(PlayedSlurm, KeepsTheJobsOfACommandThatIsStoppedWhileTheyAreSubmitted) {
+  const std::string results = folder("results");
+  const std::vector<std::string> words = {"evaluate", "smoke", "--results", results};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  {
+    test::ProgramRun driver(CDIFF_PROGRAM, with({"--engine", "slurm"}), folder("output"));
+    while (!fs::exists(folder("asked"))) ASSERT_FALSE(driver.waitForEnd(0.01)) << output();
+    driver.signal(SIGINT);
+    EXPECT_FALSE(driver.waitForEnd(0.5)) << "sbatch is not left alone\n" << output();
+    std::ofstream(folder("go")) << "now";
+    EXPECT_EQ(driver.wait(), 130) << output();
+  }
+  expectOutput("submitted 7 as cdiff-");
+  expectOutput("the jobs go on without this command");
+  for (const char* option : {"--resume", "--overwrite"}) {
+    EXPECT_EQ(cdiff(with({option})), 3) << option;
+    expectOutput("wait or run on the cluster (1)");
+  }
+  ASSERT_EQ(cdiff({"evaluate", "--results", results, "--cancel"}), 0) << output();
+  EXPECT_EQ(cdiff(with({"--resume", "--engine", "print"})), 0) << output();
 }
 
 class WithoutSlurm : public test::EvaluateCommand {};

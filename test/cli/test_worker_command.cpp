@@ -83,11 +83,12 @@ TEST_F(WorkerCommand, RefusesAnotherBuildOtherFilesAndAFolderWithoutPlan) {
   expectOutput("has no plan.json");
   plan("1");
   const fs::path scenario = file("", "scenario.yaml");
-  const std::string planned = core::readFile(scenario, "scenario");
-  core::writeOwnFile(scenario, planned + "# changed\n");
+  core::writeOwnFile(scenario, core::readFile(scenario, "scenario") + "# changed\n");
   EXPECT_EQ(cdiff({"worker", results_}), 3);
   expectOutput("is not what was planned");
-  core::writeOwnFile(scenario, planned);
+  EXPECT_EQ(statusOf(""), "error");
+  ASSERT_EQ(cdiff({"evaluate", matrix_, "--results", results_, "--resume", "--engine", "print"}), 0)
+      << output();
   const fs::path plan_file = fs::path(results_) / "plan.json";
   std::string text = core::readFile(plan_file, "plan");
   const std::size_t place = text.find("\"program_sha256\": \"") + 19;

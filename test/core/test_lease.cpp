@@ -63,7 +63,9 @@ TEST_F(LeaseTest, IsHeldByOneAtATime) {
   EXPECT_EQ(second.claim("a"), nullptr);
   EXPECT_NE(second.claim("b"), nullptr);
   ASSERT_EQ(second.holders().count("a"), 1U);
-  EXPECT_EQ(second.holders().at("a").rfind("'test', process " + std::to_string(::getpid()), 0), 0U);
+  const LeaseHolder holder = second.holders().at("a");
+  EXPECT_EQ(holder.text.rfind("'test', process " + std::to_string(::getpid()), 0), 0U);
+  EXPECT_TRUE(holder.is_alive);
   lease = nullptr;
   EXPECT_NE(second.claim("a"), nullptr);
 }
@@ -112,6 +114,7 @@ TEST_F(LeaseTest, OfAKilledProcessOfThisHostIsTakenOverAtOnce) {
   const auto lease = mine.claim("a");
   ASSERT_NE(lease, nullptr);
   EXPECT_EQ(files(), (std::set<std::string>{"a.2"}));
+  EXPECT_FALSE(lease->isFromAnotherHost());
 }
 
 TEST_F(LeaseTest, OfAnotherHostIsTakenOverOnceItStaysTheSameWhateverItsClockSays) {
@@ -121,10 +124,22 @@ TEST_F(LeaseTest, OfAnotherHostIsTakenOverOnceItStaysTheSameWhateverItsClockSays
   std::this_thread::sleep_for(std::chrono::milliseconds(80));
   writeForeign("a.1", "000000000002");
   EXPECT_EQ(mine.claim("a"), nullptr) << "it has beaten since";
-  EXPECT_EQ(mine.holders().count("a"), 1U);
+  ASSERT_EQ(mine.holders().count("a"), 1U);
+  EXPECT_TRUE(mine.holders().at("a").is_alive);
   std::this_thread::sleep_for(std::chrono::milliseconds(80));
   const auto lease = mine.claim("a");
   ASSERT_NE(lease, nullptr);
+  EXPECT_TRUE(lease->isFromAnotherHost());
+}
+
+TEST_F(LeaseTest, OfAnotherHostGivesNoSignOfLifeUntilItsFileChanges) {
+  writeForeign("a.1", "000000000001");
+  LeaseFolder mine = leases();
+  EXPECT_FALSE(mine.holders().at("a").is_alive);
+  EXPECT_FALSE(mine.holders().at("a").is_alive);
+  writeForeign("a.1", "000000000002");
+  EXPECT_TRUE(mine.holders().at("a").is_alive);
+  EXPECT_TRUE(mine.holders().at("a").is_alive) << "also at the next look";
 }
 
 TEST_F(LeaseTest, IsLostWhereAnotherTookItOver) {

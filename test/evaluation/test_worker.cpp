@@ -102,9 +102,16 @@ TEST_F(WorkerTest, WaitsForWhatAnotherHostHasAndTakesItOverOnceItIsSilent) {
   EXPECT_EQ(record("good0").status, "not_run") << "a worker that does not wait leaves it alone";
   options_.waits = true;
   options_.lease.expiry = 0.1;
+  // The session of the host that fell silent writes by an object like this one.
+  core::OutputFolder silent(file("good0", ""));
   work();
   EXPECT_EQ(record("good0").status, "completed");
   EXPECT_FALSE(fs::exists(file("good0", ".lock")));
+  const std::string summary = core::readFile(file("good0", "summary.json"), "summary");
+  silent.write("summary.json", "late");
+  EXPECT_EQ(core::readFile(file("good0", "summary.json"), "summary"), summary);
+  EXPECT_EQ(core::readFile(options_.results / kLeftBehindFolder / "good0" / "summary.json", "late"),
+            "late");
 }
 
 TEST_F(WorkerTest, RunsWhatAKilledSessionOfAnotherHostHadLocked) {
@@ -163,13 +170,24 @@ TEST_F(WorkerTest, RefusesAFolderWithoutPlanAndADamagedPlan) {
   EXPECT_THROW(readPlan(scratch_.path()), core::InputError);
 }
 
-TEST_F(WorkerTest, RefusesAScenarioThatIsNotWhatWasPlanned) {
-  announce({"good"});
-  mend("good0");
-  core::writeOwnFile(file("good0", "scenario.yaml"), "refuses");
+TEST_F(WorkerTest, EndsTheRunsWhoseScenarioIsNotWhatWasPlannedAndDoesTheOthers) {
+  announce({"refuses", "good"});
+  core::writeOwnFile(file("refuses0", "scenario.yaml"), "hang");
+  const fs::path shipped = core::shareFolder() / "config" / "scenarios" / "arterial_exit.yaml";
+  core::writeOwnFile(file("good1", "scenario.yaml"), core::readFile(shipped, "scenario"));
+  RunRecord planned = record("good1");
+  planned.scenario_sha256 = core::sha256(core::readFile(shipped, "scenario"));
+  planned.inputs = InputHasher().hashes(session::loadScenario(shipped.string()));
+  core::writeOwnFile(file("good1", "record.json"), recordJson(planned));
   options_.compares_inputs = true;
-  EXPECT_THROW(work(), core::InputError);
-  EXPECT_EQ(record("good0").status, "not_run");
+  std::vector<std::string> ended;
+  options_.ended = [&](const RunRecord& one) { ended.push_back(one.id); };
+  work();
+  EXPECT_EQ(record("refuses0").status, "error");
+  EXPECT_EQ(record("refuses0").exit_code, 3);
+  EXPECT_EQ(record("refuses0").attempts, 0) << "it was never started";
+  EXPECT_EQ(record("good1").attempts, 1);
+  EXPECT_EQ(ended.size(), 2U) << "both are told";
   EXPECT_TRUE(fs::is_empty(leaseFolder(options_.results))) << "the run is free for others";
 }
 

@@ -85,9 +85,11 @@ void writeJobName(const fs::path& results, const std::string& job_name,
   core::writeOwnFile(results / kEngineFile, json.dump(2) + "\n");
 }
 
+bool hasJobName(const fs::path& results) { return core::isFile(results / kEngineFile); }
+
 std::string readJobName(const fs::path& results) {
   const fs::path file = results / kEngineFile;
-  if (!core::isFile(file)) {
+  if (!hasJobName(results)) {
     throw core::InputError("'" + results.string() + "' has no " + kEngineFile +
                            "; expected the results of a cdiff evaluate --engine slurm");
   }

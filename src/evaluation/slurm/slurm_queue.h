@@ -29,6 +29,8 @@ void cancelJobs(const std::string& job_name);
 /// Name of the jobs of a batch, in RESULTS/engine.json.
 void writeJobName(const std::filesystem::path& results, const std::string& job_name,
                   const std::vector<std::string>& ids);
+/// Whether the folder has one.
+bool hasJobName(const std::filesystem::path& results);
 /// Throws InputError where the folder has none.
 std::string readJobName(const std::filesystem::path& results);
 
