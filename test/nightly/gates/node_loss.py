@@ -18,12 +18,19 @@ def what_is_wrong(folder, node):
         return f"status {summary(results)['status']}"
     if node not in faults(results):
         return f"{node} is not named: {faults(results)}"
-    half = [name for name in half_files(results) if (node, name) != ("recorder_node", "session.bag.active")]
-    if half:
-        return f"half files: {half}"
-    program, code = run_cdiff(["replay", bag_of(results), "--results", folder / "again", "--quiet"], folder)
+    recorder = node == "recorder_node"
+    half = [name for name in half_files(results) if not (recorder and name == "session.bag.active")]
+    return f"half files: {half}" if half else replay(folder, recorder)
+
+
+def replay(folder, recorder):
+    """What is wrong with the bag: one of a recorder that was lost may lack its first chunk, or all."""
+    results = folder / "r"
+    if recorder and not list(results.glob("session.bag*")):
+        return None
     begun = (results / "trace.csv").read_bytes().count(b"\n") > 1  # else there is nothing to replay
-    return misbehavior(program, code, {0, 1, 2} if begun else {3})
+    program, code = run_cdiff(["replay", bag_of(results), "--results", folder / "again", "--quiet"], folder)
+    return misbehavior(program, code, {0, 1, 2} | ({3} if recorder or not begun else set()))
 
 
 def lose(node, sign, delay):
