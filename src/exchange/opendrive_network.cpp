@@ -26,13 +26,21 @@ void cut(std::string& text, const std::string& begin, const std::string& end) {
   if (last != std::string::npos) text.erase(first, last + end.size() - first);
 }
 
+/// Says in the header that the coordinates are those of the map frame.
+void markAsOurs(std::string& text) {
+  const std::string begin = "<header ";
+  const std::size_t at = text.find(begin);
+  if (at == std::string::npos) return;
+  text.insert(at + begin.size(), std::string("vendor=\"") + map::kOpenDriveVendor + "\" ");
+}
+
 /// Distance from a point of a lane to the nearest lane center of about the same heading [m].
 std::optional<double> distanceTo(const map::RoadNetwork& network, const Eigen::Vector3d& point,
                                  double heading) {
   constexpr double kReach = 10.0;      // [m]
   constexpr double kMostTurned = 0.8;  // [rad]
-  const Eigen::Vector2d place = point.head<2>() + network.netOffset();
-  for (const map::LaneMatch& match : network.lanesNear(place, point.z(), kReach, heading)) {
+  for (const map::LaneMatch& match :
+       network.lanesNear(point.head<2>(), point.z(), kReach, heading)) {
     if (std::abs(match.heading_difference) < kMostTurned) return match.projection.distance;
   }
   return std::nullopt;
@@ -91,6 +99,7 @@ OpenDriveNetwork openDriveOf(const map::ImportedNetwork& network) {
   converted.text = core::readFile(file, "OpenDRIVE network");
   cut(converted.text, "<!-- generated on", "-->\n");
   cut(converted.text, " date=\"", "\"");
+  markAsOurs(converted.text);
   core::writeFileAtomically(file, converted.text);
   const auto ours = map::RoadNetwork::fromText(network.text, network.source.string());
   const auto theirs = map::RoadNetwork::fromText(map::convertOpenDrive(file), subject);

@@ -18,7 +18,8 @@ struct LaneAccuracy {
   double largest = 0.0;     ///< [m]
 };
 
-/// A network as OpenDRIVE, in the coordinates of the map frame.
+/// A network as OpenDRIVE, in the coordinates of the map frame. The vendor of its header is
+/// map::kOpenDriveVendor, by which our importer keeps these coordinates.
 struct OpenDriveNetwork {
   std::string text;
   LaneAccuracy roads;      ///< lanes of edges

@@ -145,6 +145,17 @@ TEST_F(NetworkImport, ConvertsOpenDrive) {
   EXPECT_EQ(fs::last_write_time(network.file), written);
 }
 
+TEST_F(NetworkImport, OnlyOpenDriveOfOursKeepsItsCoordinates) {
+  std::string text = kStraightRoad;
+  text.replace(text.find("x=\"0\""), 5, "x=\"-40\"");
+  const auto offsetOf = [&](const std::string& name) {
+    return RoadNetwork::fromText(importNetwork(write(name, text)).text, name).netOffset();
+  };
+  EXPECT_EQ(offsetOf("foreign.xodr"), Eigen::Vector2d(40.0, 0.0));
+  text.insert(text.find("revMajor"), "vendor=\"e2e_cdiff\" ");
+  EXPECT_EQ(offsetOf("ours.xodr"), Eigen::Vector2d(0.0, 0.0));
+}
+
 // netconvert splits names at commas, and puts variables of the environment into them.
 TEST_F(NetworkImport, ConvertsAFileWhateverItsName) {
   for (const std::string name : {"a,b.xodr", "${HOME}.xodr"}) {

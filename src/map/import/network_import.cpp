@@ -74,6 +74,14 @@ std::string convert(const fs::path& source, const std::string& format, const std
   return withoutGeneratedComment(core::readFile(converted, "converted network"));
 }
 
+/// Whether this package wrote an OpenDRIVE file. One that is no XML is left to netconvert.
+bool isOurOpenDrive(const fs::path& source) {
+  pugi::xml_document document;
+  if (!document.load_file(source.c_str(), pugi::parse_minimal)) return false;
+  const pugi::xml_node header = document.child("OpenDRIVE").child("header");
+  return std::string_view(header.attribute("vendor").value()) == kOpenDriveVendor;
+}
+
 /// Part of the cache key: raise the number when the importer gives another result for the same
 /// input.
 constexpr const char* kImporterVersion = "e2e_cdiff network importer 1";
@@ -249,7 +257,8 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
 
 std::string convertOpenDrive(const fs::path& source) {
   return convert(source, "--opendrive-files", "opendriveNetconvert.typ.xml",
-                 {"--opendrive.curve-resolution", "1", "--opendrive.min-width", "0"});
+                 {"--opendrive.curve-resolution", "1", "--opendrive.min-width", "0",
+                  "--offset.disable-normalization", isOurOpenDrive(source) ? "true" : "false"});
 }
 
 namespace {

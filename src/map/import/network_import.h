@@ -21,9 +21,13 @@ inline constexpr double kNetconvertLimit = 120.0;
 /// meanwhile (core/program.h).
 void runNetconvert(const std::vector<std::string>& arguments, const std::string& subject);
 
+/// `vendor` in the header of OpenDRIVE files that this package writes. They are in the map frame.
+inline constexpr const char* kOpenDriveVendor = "e2e_cdiff";
+
 // Converts OpenDRIVE and OpenStreetMap files into SUMO network text with SUMO's netconvert and the
 // package's type maps. The text holds no date and no paths.
 
+/// netconvert shifts the network into positive coordinates, but not a file of kOpenDriveVendor.
 /// Throws InputError and Interrupted as runNetconvert does.
 std::string convertOpenDrive(const std::filesystem::path& source);
 
