@@ -29,7 +29,7 @@ def calls_of(script, *arguments):
         environment = {**os.environ, **{f"BASH_FUNC_{name}%%": f'() {{ echo {name} "$@" >>{log}; }}' for name in STAND_INS}}
         (Path(folder) / "devel").mkdir()
         (Path(folder) / "devel" / "setup.bash").touch()
-        subprocess.run([SOURCE / "scripts" / script, *arguments], env={**environment, "BUILD": folder}, cwd=folder, timeout=60,
+        subprocess.run([SOURCE / "scripts" / script, *arguments], env={**environment, "BUILD": folder, "OPEN": "yes"}, cwd=folder, timeout=60,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
         return [line.split() for line in log.read_text().splitlines()] if log.exists() else []
 
