@@ -15,6 +15,7 @@ namespace cdiff::map {
 namespace {
 
 constexpr double kBeyondJunction = 10.0;  // [m] at least so much of the edge after a junction
+constexpr double kSamePlace = 1e-3;       // [m]
 
 SearchLimits limitsOf(double max_length, bool lane_changes, const TurnRounds& turn_rounds) {
   SearchLimits limits;
@@ -182,8 +183,12 @@ Route LaneGraph::extended(const Route& route, double length) const {
   const double begin = line.project(end.head<2>()).arc_length;
   Continuation continuation(network_, turn_rounds_, last);
   continuation.extend(begin, std::max(0.0, missing));
-  const bool stays = continuation.path().lanes.size() == 1;
+  const std::vector<LaneIndex>& onward = continuation.path().lanes;
+  const bool stays = onward.size() == 1;
   if (stays && continuation.goal() - begin < 0.1) return route;
+  // At the very end of a lane that ends there is no way left on which to change to its neighbor.
+  const bool at_end = line.length() - begin < kSamePlace;
+  if (!stays && at_end && !follows(network_, onward[0], onward[1])) return route;
   const Route rest = toRoute(continuation.path(), begin, continuation.goal());
   std::vector<Eigen::Vector3d> points = route.path().points();
   std::vector<LaneIndex> lanes = route.lanes();

@@ -227,6 +227,21 @@ TEST_F(LaneGraphTest, ExtensionEndsWhereTheNetworkEnds) {
   EXPECT_NEAR(route.length(), 60.0, 1e-6);
 }
 
+TEST(LaneGraphExtension, EndsAtTheVeryEndOfALaneThatEnds) {
+  // Only the left lane of "a" goes on.
+  test::NetworkText text;
+  text.edge("a", {"0,0 100,0", "0,4 100,4"}, "k", "j")
+      .edge(":j_0", {"100,4 120,4"})
+      .edge("b", {"120,4 200,4"}, "j", "e")
+      .connection("a_1", "b_0", ":j_0_0");
+  const RoadNetwork network = text.network();
+  const LaneGraph graph(network);
+  const LanePath path{{network.findLane("a_0")}, 20.0};
+  const Route at_end = graph.toRoute(path, 80.0, 100.0);
+  EXPECT_EQ(graph.extended(at_end, 60.0).length(), at_end.length());
+  EXPECT_GT(graph.extended(graph.toRoute(path, 60.0, 80.0), 60.0).length(), 50.0);
+}
+
 TEST(LaneGraphExtension, TakesTheStraightestFork) {
   test::NetworkText text;
   text.edge("a", {"0,0 50,0"}).edge("left", {"50,0 50,50"}).edge("slight", {"50,0 99,10"});
