@@ -37,10 +37,10 @@ void addEngineOptions(CLI::App& command, EngineArguments& arguments);
 void requireEngine(const EngineArguments& arguments);
 
 /// Runs a plan and gives the record of every planned run, in their order. `options` say what is run
-/// and who is told; program, server and jobs are set by the engine. `attach`: the jobs of the plan
-/// are on the cluster already. `stop`: once true, no run is started here; jobs on a cluster go on.
-/// The engine `print` writes plan and script, prints the script, and runs nothing. Throws
-/// InputError where Slurm refuses; nothing is queued then.
+/// and what is called when a run ends; the engine sets program, server and jobs. `attach`: the jobs
+/// of the plan are on the cluster already. `stop`: once true, no run is started here; jobs on a
+/// cluster go on. The engine `print` writes plan and script, prints the script, and runs nothing.
+/// Throws InputError where Slurm refuses; nothing is queued then.
 std::vector<evaluation::RunRecord> executeOn(const EngineArguments& arguments,
                                              const std::vector<evaluation::PlannedRun>& plan,
                                              evaluation::ExecutorOptions options, bool attach,

@@ -147,41 +147,51 @@ int searchScenario(const SearchArguments& arguments) {
   return exitCodeOf(search, arguments);
 }
 
+/// What is searched, in what, and for which ego.
+void addRequestOptions(CLI::App& command, SearchArguments& arguments) {
+  evaluation::SearchRequest& request = arguments.request;
+  command.add_option("scenario", request.scenario, "Scenario file or shipped name");
+  command.add_option("--budget", request.budget, "Cases that are run")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--results,--output", arguments.results, "Result folder")->required();
+  command
+      .add_option("--space", arguments.space,
+                  "What is varied: a YAML file, or the name of a shipped one")
+      ->capture_default_str();
+  command
+      .add_option("--method", arguments.method,
+                  "Instead of the one in --space: evolution makes new cases of the worst so far; "
+                  "random draws all")
+      ->check(CLI::IsMember({"evolution", "random"}));
+  command.add_option("--seed", request.seed, "Of the proposals; the scenario keeps its own")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 2147483647));
+}
+
+/// What all cases have in common, instead of the scenario's own.
+void addOverrideOptions(CLI::App& command, evaluation::SearchRequest& request) {
+  command.add_option("--mode", request.mode,
+                     "naturalistic, challenging or safety_critical, instead of the scenario's");
+  command.add_option("--ego", request.ego,
+                     "Planner of the ego, also one of a plug-in, with options as 'NAME key=value "
+                     "...'");
+  command.add_option("--cbv-planner", request.cbv_planner, "Planner of the CBVs");
+  command
+      .add_option("--set", request.set,
+                  "Any key of the scenario as key=value, for all cases; may be repeated")
+      ->allow_extra_args(false);
+}
+
 }  // namespace
 
 void addSearchCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<SearchArguments>();
   arguments->engine.command = "cdiff search";
   arguments->engine.go_on = "to go on once they have ended: the same command with --resume";
-  evaluation::SearchRequest& request = arguments->request;
   CLI::App* command = program.add_subcommand(
       "search", "Search a scenario for the sessions that are worst for its ego");
-  command->add_option("scenario", request.scenario, "Scenario file or shipped name");
-  command->add_option("--budget", request.budget, "Cases that are run")
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--results,--output", arguments->results, "Result folder")->required();
-  command
-      ->add_option("--space", arguments->space,
-                   "What is varied: a YAML file, or the name of a shipped one")
-      ->capture_default_str();
-  command
-      ->add_option("--method", arguments->method,
-                   "Instead of the one in --space: evolution makes new cases of the worst so far; "
-                   "random draws all")
-      ->check(CLI::IsMember({"evolution", "random"}));
-  command->add_option("--seed", request.seed, "Of the proposals; the scenario keeps its own")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 2147483647));
-  command->add_option("--mode", request.mode,
-                      "naturalistic, challenging or safety_critical, instead of the scenario's");
-  command->add_option("--ego", request.ego,
-                      "Planner of the ego, also one of a plug-in, with options as 'NAME key=value "
-                      "...'");
-  command->add_option("--cbv-planner", request.cbv_planner, "Planner of the CBVs");
-  command
-      ->add_option("--set", request.set,
-                   "Any key of the scenario as key=value, for all cases; may be repeated")
-      ->allow_extra_args(false);
+  addRequestOptions(*command, *arguments);
+  addOverrideOptions(*command, arguments->request);
   addEngineOptions(*command, arguments->engine);
   CLI::Option* resume =
       command->add_flag("--resume", arguments->resume,

@@ -187,7 +187,7 @@ TEST_F(WorkerTest, EndsTheRunsWhoseScenarioIsNotWhatWasPlannedAndDoesTheOthers) 
   EXPECT_EQ(record("refuses0").exit_code, 3);
   EXPECT_EQ(record("refuses0").attempts, 0) << "it was never started";
   EXPECT_EQ(record("good1").attempts, 1);
-  EXPECT_EQ(ended.size(), 2U) << "both are told";
+  EXPECT_EQ(ended.size(), 2U) << "the caller hears of both";
   EXPECT_TRUE(fs::is_empty(leaseFolder(options_.results))) << "the run is free for others";
 }
 

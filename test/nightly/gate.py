@@ -36,11 +36,20 @@ def attempt(trial):
         return f"could not be tried: {type(error).__name__}: {error}"
 
 
+def prepared(gate, draw, count):
+    """The gate's trials. What they need together and cannot have is one that failed, and the last."""
+    try:
+        yield from gate.trials(draw, count)
+    except Exception as error:
+        text = f"could not be prepared: {type(error).__name__}: {error}"
+        yield "preparation", lambda: text
+
+
 def run(gate, seed, share, path):
     """Tries `share` of the gate's trials, at least one, and writes the verdict into `path` after each."""
     verdict = Verdict(gate, seed)
     begin = time.monotonic()
-    for name, trial in gate.trials(random.Random(seed), max(1, round(share * gate.count))):
+    for name, trial in prepared(gate, random.Random(seed), max(1, round(share * gate.count))):
         failure = attempt(trial)
         verdict.tried += 1
         verdict.seconds = time.monotonic() - begin

@@ -34,7 +34,10 @@ def arguments():
     parser.add_argument("source", type=Path)
     parser.add_argument("result", type=Path)
     parser.add_argument("gates", nargs="*")
-    return parser.parse_intermixed_args()
+    given = parser.parse_intermixed_args()
+    if not 0.0 < given.share <= 1.0:
+        parser.error(f"--share is {given.share}; expected a number above 0, and at most 1")
+    return given
 
 
 def main():

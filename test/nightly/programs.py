@@ -90,6 +90,14 @@ class Program:
             time.sleep(0.02)
         raise RuntimeError(f"no process '{name}' within {limit} s: {self.text()[-500:]}")
 
+    def wait_for(self, condition, what, limit=60.0):
+        """Waits until `condition()` holds, while the program runs."""
+        end = time.monotonic() + limit
+        while not condition():
+            if self.process.poll() is not None or time.monotonic() > end:
+                raise RuntimeError(f"{what} did not come: {self.text()[-500:]}")
+            time.sleep(0.02)
+
     def text(self):
         return self.log.read_text(errors="replace")
 
@@ -103,9 +111,8 @@ class RosMaster:
     def __enter__(self):
         port = free_port()
         self.uri = f"http://127.0.0.1:{port}"
-        self.run(["rosmaster", "--core", "-p", port])
-        while socket.socket().connect_ex(("127.0.0.1", port)) != 0:
-            time.sleep(0.05)
+        master = self.run(["rosmaster", "--core", "-p", port])
+        master.wait_for(lambda: socket.socket().connect_ex(("127.0.0.1", port)) == 0, "the ROS master")
         return self
 
     def run(self, command):
@@ -181,3 +188,13 @@ def ticks(results):
 
 def faults(results):
     return " | ".join(str(fault) for fault in summary(results)["faults"])
+
+
+def wrong_loss(results, culprit, kept=()):
+    """What the result of a session that lost a part does not say of `culprit`; `kept`: half files that may stay."""
+    if summary(results)["status"] != "error":
+        return f"status {summary(results)['status']}"
+    if culprit not in faults(results):
+        return f"{culprit} is not named: {faults(results)}"
+    half = [name for name in half_files(results) if name not in kept]
+    return f"half files: {half}" if half else None

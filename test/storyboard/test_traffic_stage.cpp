@@ -60,6 +60,12 @@ class StoryboardTrafficStage : public testing::Test {
     state.speed = speed;
     stage_.observe("ego", state, nullptr, kStep);
   }
+  /// The car at 20 m, the ego at 100 m, with these speeds [m/s].
+  void driveBehindEgo(double speed, double ego_speed) {
+    observe(100.0, ego_speed);
+    begin(placeAt(20.0));
+    begin(speedOf(speed));
+  }
   void drive(double seconds) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) {
       time_ += kStep;
@@ -109,9 +115,7 @@ TEST_F(StoryboardTrafficStage, PlacesComeBeforeTheOtherActionsOfTheBeginning) {
 }
 
 TEST_F(StoryboardTrafficStage, ADistanceIsKeptUntilItIsReached) {
-  observe(100.0, 0.0);
-  begin(placeAt(20.0));
-  begin(speedOf(12.0));
+  driveBehindEgo(12.0, 0.0);
   DistanceAction distance;
   distance.entity = "ego";
   distance.limits = SpeedLimits{};
@@ -139,9 +143,7 @@ TEST_F(StoryboardTrafficStage, WithoutLimitsADistanceIsThereAtOnce) {
 }
 
 TEST_F(StoryboardTrafficStage, ADistanceIsKeptWithinTheLimits) {
-  observe(100.0, 30.0);
-  begin(placeAt(20.0));
-  begin(speedOf(10.0));
+  driveBehindEgo(10.0, 30.0);
   DistanceAction distance;
   distance.entity = "ego";
   distance.continuous = true;
@@ -154,9 +156,7 @@ TEST_F(StoryboardTrafficStage, ADistanceIsKeptWithinTheLimits) {
 }
 
 TEST_F(StoryboardTrafficStage, ALateralDistanceIsKeptAtItsSpeed) {
-  observe(100.0, 10.0);
-  begin(placeAt(20.0));
-  begin(speedOf(10.0));
+  driveBehindEgo(10.0, 10.0);
   LateralDistanceAction beside;
   beside.entity = "ego";
   beside.value = 0.5;

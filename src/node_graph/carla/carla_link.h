@@ -51,7 +51,7 @@ class CarlaLink {
   /// `route_topic` empty: /carla/EGO/waypoints. A `stop` that is raised ends every waiting.
   CarlaLink(CarlaRoles roles, const std::string& route_topic, StopSignal& stop);
 
-  /// Waits until the bridge has told what a session needs and listens to the commands of all roles.
+  /// Waits until the bridge has published what a session needs and listens to all roles' commands.
   /// Throws SimulatorError naming topics that stay silent for `seconds` of wall time; InputError
   /// for a role that no actor has or that the bridge does not control, and for a bridge that is not
   /// in synchronous mode.
@@ -63,7 +63,7 @@ class CarlaLink {
   const std::string& routeTopic() const { return route_topic_; }
   /// From one frame to the next [s].
   double frameStep() const { return status_->fixed_delta_seconds; }
-  /// Whether the bridge was told to pause.
+  /// Whether the bridge is paused.
   bool paused() const { return status_->synchronous_mode_running == 0; }
   const CarlaRoles& roles() const { return roles_; }
   /// Role name of an actor; empty when the bridge lists none.

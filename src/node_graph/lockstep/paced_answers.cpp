@@ -14,8 +14,7 @@
 namespace cdiff::node_graph {
 namespace {
 
-constexpr double kOldest =
-    0.5;  // [s] of simulated time from a decision on; its plan drives no longer
+constexpr double kOldest = 0.5;     // [s] a plan drives for less than this
 constexpr double kRounding = 1e-6;  // [s], or rows of a plan; times are multiples of the step
 
 bool drivenIn(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_id) {

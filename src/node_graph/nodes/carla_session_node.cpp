@@ -271,8 +271,9 @@ void CarlaSessionNode::hold(const Decision& decision) {
   held_ = std::move(held);
 }
 
-/// One command for each vehicle that the bridge waits for: a vehicle that CARLA drives is told what
-/// it does already. None where the bridge has gone on, or it would count for the wrong frame.
+/// One command for each vehicle that the bridge waits for. A vehicle that CARLA drives gets the
+/// command that it reports. None is sent where the bridge has gone on: it would count for the wrong
+/// frame.
 void CarlaSessionNode::command(const CarlaFrame& frame) {
   spin(0.0);
   if (link_.superseded()) {

@@ -15,10 +15,7 @@ def kill_and_replay(delay):
     with Folder() as folder:
         results = folder / "r"
         program = Program([CDIFF, *SESSION, "--results", results], folder)
-        while not (results.is_dir() and any(".bag" in path.name and path.stat().st_size > CHUNK for path in results.iterdir())):
-            if program.process.poll() is not None:
-                return f"ended by itself: {program.text()[-300:]}"
-            time.sleep(0.02)
+        program.wait_for(lambda: any(path.stat().st_size > CHUNK for path in results.glob("*.bag*")), "the first chunk of the bag")
         time.sleep(delay)
         for process in program.living():
             os.kill(process, signal.SIGKILL)

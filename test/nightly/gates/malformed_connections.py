@@ -2,7 +2,6 @@
 import socket
 import struct
 import subprocess
-import time
 
 from gate import Gate
 from programs import ROOT, Folder, Program, RosMaster, misbehavior
@@ -53,8 +52,7 @@ def trials(random, count):
     with Folder() as folder, RosMaster(folder) as master:  # an open session, as with nodes of a user's own
         program = Program([ROOT / "scripts" / "session", *SESSION, f"results:={folder / 'r'}"], folder, E2E_CDIFF_MASTER=master.uri)
         program.find("traffic_simulator_node")
-        while not (folder / "r" / ".reserve").exists():
-            time.sleep(0.1)
+        program.wait_for((folder / "r" / ".reserve").exists, "the session's first tick")
         open_ports = ports(program)
         for index in range(count - 1):
             port = open_ports[index % len(open_ports)]

@@ -5,7 +5,7 @@ import time
 from pathlib import Path
 
 from gate import Gate
-from programs import ROOT, Folder, Program, RosMaster, faults, half_files, misbehavior, run_cdiff
+from programs import ROOT, Folder, Program, RosMaster, faults, half_files, misbehavior, run_cdiff, wrong_loss
 
 DISTURBER = Path(__file__).with_name("parts") / "disturber.py"
 NODES = {"/traffic": "traffic_simulator_node", "/cbv_0/camera/image_raw": "camera_node", "/cbv/selection": "cbv_identification_node",
@@ -47,10 +47,10 @@ def judge(session, results, node, kind, expected):
     """A session that lost a node says so; any other is as if nothing had been."""
     lost = kind in ("off", "stuck")
     failure = misbehavior(session, session.end(60), {2} if lost else {0, 1, 2})
-    if failure or half_files(results):
-        return failure or f"half files: {half_files(results)}"
-    if lost:
-        return None if node in faults(results) else f"{node} is not named: {faults(results)}"
+    if failure or lost:
+        return failure or wrong_loss(results, node)
+    if half_files(results):
+        return f"half files: {half_files(results)}"
     return None if (results / "trace.csv").read_bytes() == expected else f"another course: {faults(results)}"
 
 
@@ -63,8 +63,7 @@ def attempt(topic, kind, random, expected):
         if kind in ("garbage", "wrong"):
             master.run(["/usr/bin/python3", DISTURBER, topic, kind, random.randrange(10**6)])
         else:
-            while not list(results.glob("trace.csv*")):
-                time.sleep(0.05)
+            session.wait_for(lambda: list(results.glob("trace.csv*")), "the session's trace")
             time.sleep(random.uniform(0.0, 1.0))
             disturb(process, kind, random)
         return judge(session, results, NODES[topic], kind, expected)

@@ -4,7 +4,7 @@ import signal
 import time
 
 from gate import Gate
-from programs import ROOT, Folder, Program, bag_of, faults, half_files, misbehavior, run_cdiff, summary
+from programs import ROOT, Folder, Program, bag_of, misbehavior, run_cdiff, wrong_loss
 
 LIMIT = 45.0  # [s]
 NODES = ["traffic_simulator_node", "cbv_identification_node", "ego_planner_node", "cbv_planner_node", "metrics_node", "recorder_node"]
@@ -13,14 +13,8 @@ SESSION = ["scenario:=roundabout_entry", "cbv_planner:=pdm_lite", "record:=true"
 
 def what_is_wrong(folder, node):
     """What result and bag of a session that lost `node` do not say."""
-    results = folder / "r"
-    if summary(results)["status"] != "error":
-        return f"status {summary(results)['status']}"
-    if node not in faults(results):
-        return f"{node} is not named: {faults(results)}"
     recorder = node == "recorder_node"
-    half = [name for name in half_files(results) if not (recorder and name == "session.bag.active")]
-    return f"half files: {half}" if half else replay(folder, recorder)
+    return wrong_loss(folder / "r", node, {"session.bag.active"} if recorder else ()) or replay(folder, recorder)
 
 
 def replay(folder, recorder):

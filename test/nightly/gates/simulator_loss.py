@@ -4,20 +4,11 @@ import signal
 import time
 
 from gate import Gate
-from programs import Folder, Program, CDIFF, faults, half_files, misbehavior, summary
+from programs import CDIFF, Folder, Program, misbehavior, wrong_loss
 
 LIMIT = 45.0  # [s]
 # Slowly enough that the moment falls into the session.
 SESSION = ["run", "roundabout_entry", "--cbv-planner", "pdm_lite", "--quiet", "--set", "at_most=4", "--set", "target_speed=1"]
-
-
-def what_is_wrong(results):
-    """What the result of a session that lost SUMO does not say."""
-    if summary(results)["status"] != "error":
-        return f"status {summary(results)['status']}"
-    if "SUMO" not in faults(results):
-        return f"SUMO is not named: {faults(results)}"
-    return f"half files: {half_files(results)}" if half_files(results) else None
 
 
 def lose(sign, delay):
@@ -26,9 +17,7 @@ def lose(sign, delay):
         sumo = program.find("sumo")
         time.sleep(delay)
         os.kill(sumo, sign)
-        begin = time.monotonic()
-        failure = misbehavior(program, program.end(LIMIT), {2})
-        return failure or what_is_wrong(folder / "r") or (f"{time.monotonic() - begin:.0f} s" if time.monotonic() - begin > LIMIT else None)
+        return misbehavior(program, program.end(LIMIT), {2}) or wrong_loss(folder / "r", "SUMO")
 
 
 def trials(random, count):

@@ -83,6 +83,7 @@ def soak(minutes):
 
 
 def trials(_, minutes):
+    """One, which lasts as many minutes as others have trials."""
     yield f"{minutes} minutes", lambda: soak(minutes)
 
 
