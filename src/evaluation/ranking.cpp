@@ -182,7 +182,7 @@ std::string egoText(const Ranking& ranking, const SystemNames& names) {
 /// The first sentence, of a batch in which a CBV was driven.
 std::string answerText(const Ranking& ranking, const SystemNames& names) {
   const System& first = ranking.systems.front();
-  const std::string name = names.of(first.factors);
+  const std::string& name = names.of(first.factors);
   const std::string ego = tellsMotion(ranking) ? "the moving ego" : "the ego";
   const std::string touched = "CBVs touched " + ego + " " + contactsText(first, ranking) + ".";
   if (ranking.systems.size() == 1) {
