@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Print what `cdiff search` finds beside random draws of the same budget, as "figure value unit goal".
 
-    scripts/benchmark search [SCENARIO] [--budget N] [--seeds N] [--first N] [--jobs N] [--mode MODE] [--ego EGO]
+    scripts/benchmark search [SCENARIO...] [--budget N] [--seeds N] [--first N] [--jobs N] [--mode MODE] [--ego EGO]
                              [--cbv-planner NAME] [--json FILE]
 
-Each seed is searched by both methods. A figure with `difference` is evolution minus random, a mean over the pairs.
+Each scenario and seed is searched by both methods. A figure with `difference` is evolution minus random, a mean over the
+pairs. A scenario is worse where evolution found more cases over all seeds or, with as many, the higher mean of worst scores.
 """
 import argparse
 import csv
@@ -18,9 +19,9 @@ from pathlib import Path
 METHODS = ("evolution", "random")
 
 
-def search(cdiff, options, method, seed, results):
+def search(cdiff, options, scenario, method, seed, results):
     """Number of cases that were found, and the largest score."""
-    command = [cdiff, "search", options.scenario, "--budget", str(options.budget), "--method", method, "--seed", str(seed),
+    command = [cdiff, "search", scenario, "--budget", str(options.budget), "--method", method, "--seed", str(seed),
                "--mode", options.mode, "--results", results, "--jobs", str(options.jobs)]
     for option, value in (("--ego", options.ego), ("--cbv-planner", options.cbv_planner)):
         command += [option, value] if value else []
@@ -37,21 +38,37 @@ def mean(values):
 
 
 def figures_of(pairs):
-    """Figures by name, of a list of {method: {quantity: value}}."""
+    """Figures by name, of a list of {method: {quantity: value}}, one for each scenario and seed."""
     figures = {}
     for quantity, unit in (("found", "cases"), ("worst_score", "")):
         for method in METHODS:
             figures[f"search_{quantity}_{method}"] = (mean([pair[method][quantity] for pair in pairs]), unit)
         differences = [pair["evolution"][quantity] - pair["random"][quantity] for pair in pairs]
         figures[f"search_{quantity}_difference"] = (mean(differences), unit)
-        figures[f"search_{quantity}_higher"] = (sum(value > 0 for value in differences), "seeds")
-        figures[f"search_{quantity}_lower"] = (sum(value < 0 for value in differences), "seeds")
+        figures[f"search_{quantity}_higher"] = (sum(value > 0 for value in differences), "pairs")
+        figures[f"search_{quantity}_lower"] = (sum(value < 0 for value in differences), "pairs")
     return figures
+
+
+def standing(pairs):
+    """1 where evolution found worse cases than random draws in a scenario's pairs, -1 where random draws did, else 0."""
+    worst = {method: tuple(sum(pair[method][quantity] for pair in pairs) for quantity in ("found", "worst_score"))
+             for method in METHODS}
+    return (worst["evolution"] > worst["random"]) - (worst["evolution"] < worst["random"])
+
+
+def search_pairs(cdiff, options, scenario):
+    pairs = []
+    for seed in range(options.first, options.first + options.seeds):
+        with tempfile.TemporaryDirectory() as scratch:
+            pairs.append({method: search(cdiff, options, scenario, method, seed, str(Path(scratch) / method)) for method in METHODS})
+        print(f"{scenario} seed {seed}: {pairs[-1]}", file=sys.stderr, flush=True)
+    return pairs
 
 
 def main():
     parser = argparse.ArgumentParser(prog="scripts/benchmark search")
-    parser.add_argument("scenario", nargs="?", default="t_junction_straight", help="shipped name or file")
+    parser.add_argument("scenario", nargs="*", default=["t_junction_straight"], help="shipped names or files")
     parser.add_argument("--budget", type=int, default=40, help="cases of a search")
     parser.add_argument("--seeds", type=int, default=5, help="pairs of searches")
     parser.add_argument("--first", type=int, default=1, help="first seed")
@@ -62,12 +79,11 @@ def main():
     parser.add_argument("--json", help="also write the figures to this file")
     options = parser.parse_args()
     cdiff = str(Path(os.environ.get("BUILD", "build")) / "devel/lib/e2e_cdiff/cdiff")
-    pairs = []
-    for seed in range(options.first, options.first + options.seeds):
-        with tempfile.TemporaryDirectory() as scratch:
-            pairs.append({method: search(cdiff, options, method, seed, str(Path(scratch) / method)) for method in METHODS})
-        print(f"seed {seed}: {pairs[-1]}", file=sys.stderr, flush=True)
-    figures = figures_of(pairs)
+    pairs = {scenario: search_pairs(cdiff, options, scenario) for scenario in options.scenario}
+    figures = figures_of([pair for of_scenario in pairs.values() for pair in of_scenario])
+    standings = [standing(of_scenario) for of_scenario in pairs.values()]
+    figures["search_scenarios_worse"] = (standings.count(1), "scenarios")
+    figures["search_scenarios_milder"] = (standings.count(-1), "scenarios")
     for name, (value, unit) in figures.items():
         print(f"{name} {value:.2f} {unit or '-'} -")
     if options.json:
