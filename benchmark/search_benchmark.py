@@ -5,7 +5,8 @@
                              [--cbv-planner NAME] [--json FILE]
 
 Each scenario and seed is searched by both methods. A figure with `difference` is evolution minus random, a mean over the
-pairs. A scenario is worse where evolution found more cases over all seeds or, with as many, the higher mean of worst scores.
+pairs. Each found case runs again: `repeated` counts those that give the same trace. A scenario is worse where evolution found
+more cases over all seeds or, with as many, the higher mean of worst scores.
 """
 import argparse
 import csv
@@ -30,7 +31,18 @@ def search(cdiff, options, scenario, method, seed, results):
         sys.exit(f"cdiff search ended with {ended.returncode}: {ended.stderr[-2000:]}")
     with open(Path(results) / "cases.csv", newline="", encoding="utf-8") as file:
         cases = list(csv.DictReader(file))
-    return {"found": sum(case["found"] == "yes" for case in cases), "worst_score": max(float(case["score"]) for case in cases)}
+    found = [case for case in cases if case["found"] == "yes"]
+    return {"found": len(found), "worst_score": max(float(case["score"]) for case in cases),
+            "repeated": sum(repeats(cdiff, Path(results), case) for case in found)}
+
+
+def repeats(cdiff, results, case):
+    """Whether the scenario of a found case, run again, gives the same trace."""
+    again = results / "again" / case["id"]
+    subprocess.run([cdiff, "run", str(results / "found" / f"{case['id']}.yaml"), "--quiet", "--results", str(again)], check=False,
+                   capture_output=True)
+    summary = again / "summary.json"
+    return summary.exists() and json.loads(summary.read_text())["trace_sha256"] == case["trace_sha256"]
 
 
 def mean(values):
@@ -40,9 +52,11 @@ def mean(values):
 def figures_of(pairs):
     """Figures by name, of a list of {method: {quantity: value}}, one for each scenario and seed."""
     figures = {}
-    for quantity, unit in (("found", "cases"), ("worst_score", "")):
+    for quantity, unit in (("found", "cases"), ("worst_score", ""), ("repeated", "cases")):
         for method in METHODS:
             figures[f"search_{quantity}_{method}"] = (mean([pair[method][quantity] for pair in pairs]), unit)
+        if quantity == "repeated":
+            continue
         differences = [pair["evolution"][quantity] - pair["random"][quantity] for pair in pairs]
         figures[f"search_{quantity}_difference"] = (mean(differences), unit)
         figures[f"search_{quantity}_higher"] = (sum(value > 0 for value in differences), "pairs")

@@ -30,3 +30,5 @@ add_library(e2e_cdiff_carla_messages INTERFACE)
 target_include_directories(e2e_cdiff_carla_messages SYSTEM INTERFACE ${carla_headers})
 target_link_libraries(e2e_cdiff_carla_messages INTERFACE e2e_cdiff_messages)
 add_dependencies(e2e_cdiff_carla_messages e2e_cdiff_carla_headers)
+# Whoever asks for the headers of our messages gets these as well (scripts/check).
+add_dependencies(e2e_cdiff_generate_messages_cpp e2e_cdiff_carla_headers)

@@ -182,8 +182,6 @@ void addEngineOptions(CLI::App& command, EngineArguments& arguments) {
   command.add_option("--jobs", arguments.jobs, "Sessions at a time")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
-  command.add_flag("--fresh", arguments.fresh,
-                   "Start the program for each session, instead of once for each job");
   command
       .add_option(
           "--engine", arguments.engine,
@@ -195,6 +193,11 @@ void addEngineOptions(CLI::App& command, EngineArguments& arguments) {
       .add_option("--slurm", arguments.slurm,
                   "What to ask of Slurm: key=value or a YAML file; may be repeated")
       ->allow_extra_args(false);
+}
+
+void addFreshOption(CLI::App& command, EngineArguments& arguments) {
+  command.add_flag("--fresh", arguments.fresh,
+                   "Start the program for each session, instead of once for each job");
 }
 
 void requireEngine(const EngineArguments& arguments) {

@@ -30,8 +30,11 @@ struct EngineArguments {
   bool prints() const { return engine == "print"; }
 };
 
-/// Adds --jobs, --fresh, --engine and --slurm.
+/// Adds --jobs, --engine and --slurm.
 void addEngineOptions(CLI::App& command, EngineArguments& arguments);
+
+/// Adds --fresh, where each run is a session.
+void addFreshOption(CLI::App& command, EngineArguments& arguments);
 
 /// Throws InputError where Slurm is missing or does not answer, or the options are wrong.
 void requireEngine(const EngineArguments& arguments);

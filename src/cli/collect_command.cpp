@@ -2,20 +2,19 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The command `cdiff collect`: drives sessions, or reads bags, and makes training samples.
 #include <algorithm>
-#include <deque>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <numeric>
 
+#include "cli/batch_engine.h"
 #include "cli/commands.h"
 #include "collection/dataset_statistics.h"
 #include "core/file.h"
 #include "core/output_folder.h"
-#include "core/process_pool.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/run_plan.h"
 #include "learning/samples/scene_file.h"
 #include "node_graph/bags/dataset_from_bag.h"
 #include "suite/seal.h"
@@ -39,14 +38,17 @@ struct CollectArguments {
   node_graph::BagRequest bags;
   int seeds = 1;
   int first_seed = 1;
-  int jobs = 1;
+  EngineArguments engine;
+  bool cancel = false;
 };
 
+/// Arguments of the program, as the command of a run.
 std::vector<std::string> wordsOf(const CollectRequest& request) {
-  std::vector<std::string> words = {kSessionCommand, request.scenario,
-                                    "--seed",        std::to_string(request.seed),
-                                    "--results",     request.results.string(),
-                                    "--duration",    core::formatNumber(request.duration)};
+  const std::string scenario =
+      core::isFile(request.scenario) ? fs::absolute(request.scenario).string() : request.scenario;
+  std::vector<std::string> words = {
+      kSessionCommand, scenario,    "--seed",     std::to_string(request.seed),
+      "--results",     "{results}", "--duration", core::formatNumber(request.duration)};
   if (request.keep_bag) words.push_back("--keep-bags");
   if (!request.images) words.push_back("--no-images");
   if (request.scenes) words.push_back("--scenes");
@@ -103,31 +105,11 @@ std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
   return sessions;
 }
 
-/// Sums up every session whose files are there.
-collection::StatisticsByName conclude(const CollectArguments& arguments,
-                                      const std::vector<CollectRequest>& sessions) {
-  collection::StatisticsByName statistics;
-  for (const CollectRequest& request : sessions) {
-    const std::string name = collection::sessionName(collection::resolveCollection(request));
-    const fs::path file = collection::statisticsFile(request, name);
-    if (fs::exists(file)) statistics[name] = collection::readStatistics(file);
-  }
-  collection::describeDataset(arguments.request.results, collection::sumOf(statistics));
-  return statistics;
-}
-
-/// A session to drive in a process of its own.
-struct SessionJob {
-  std::string name;
-  std::vector<std::string> words;           ///< arguments
-  int exit_code = ExitCode::kRunTimeError;  ///< until it has ended
-};
-
-int exitCode(const std::vector<SessionJob>& jobs) {
+int exitCode(const std::vector<evaluation::RunRecord>& records) {
   int code = ExitCode::kPassed;
-  for (const SessionJob& job : jobs) {
-    if (job.exit_code == ExitCode::kPassed) continue;
-    if (job.exit_code != ExitCode::kBadInput) return ExitCode::kRunTimeError;
+  for (const evaluation::RunRecord& record : records) {
+    if (record.complete()) continue;
+    if (record.exit_code != ExitCode::kBadInput) return ExitCode::kRunTimeError;
     code = ExitCode::kBadInput;
   }
   return code;
@@ -178,33 +160,45 @@ bool isDone(const CollectRequest& request, const std::string& name) {
   return (samples || !request.images) && scene;
 }
 
-std::vector<SessionJob> jobsOf(const std::vector<CollectRequest>& sessions) {
-  std::vector<SessionJob> jobs;
-  for (const CollectRequest& request : sessions) {
-    const std::string name = collection::sessionName(collection::resolveCollection(request));
-    if (!isDone(request, name)) jobs.push_back({name, wordsOf(request)});
-  }
-  std::cerr << sessions.size() << " sessions, " << sessions.size() - jobs.size()
-            << " of them already there\n";
-  return jobs;
+/// The run of one session. Its files lie in the folders of the data set.
+evaluation::PlannedRun runOf(const CollectRequest& request,
+                             const collection::CollectSettings& settings,
+                             evaluation::InputHasher& hasher) {
+  evaluation::PlannedRun run;
+  run.id = collection::sessionName(settings);
+  for (const std::string& factor : evaluation::factorNames()) run.factors[factor] = "";
+  run.factors["scenario"] = request.scenario;
+  run.factors["seed"] = std::to_string(request.seed);
+  run.scenario_text = core::dumpOptions(settings.scenario);
+  run.scenario_sha256 = core::sha256(run.scenario_text);
+  run.inputs = hasher.hashes(settings.scenario);
+  run.command = {wordsOf(request), ""};
+  return run;
 }
 
-void driveSessions(std::vector<SessionJob>& jobs, int at_a_time, const std::atomic<bool>& stop) {
-  std::deque<std::size_t> numbers(jobs.size());
-  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  std::size_t done = 0;
-  core::PoolCalls calls;
-  calls.start = [&](std::size_t i) { return core::ProcessJob{"/proc/self/exe", jobs[i].words}; };
-  calls.ended = [&](const core::ProcessEnd& end) {
-    SessionJob& job = jobs[end.job];
-    job.exit_code = end.exit_code;
-    std::cerr << ++done << "/" << jobs.size() << " " << job.name << " exit code " << job.exit_code
-              << "\n";
-    return false;
-  };
-  core::PoolLimits limits;
-  limits.at_a_time = at_a_time;
-  core::runProcesses(std::move(numbers), limits, stop, calls);
+/// The sessions that are still to be driven.
+std::vector<evaluation::PlannedRun> planOf(const std::vector<CollectRequest>& sessions) {
+  std::vector<evaluation::PlannedRun> plan;
+  evaluation::InputHasher hasher;
+  for (const CollectRequest& request : sessions) {
+    const auto settings = collection::resolveCollection(request);
+    if (!isDone(request, collection::sessionName(settings)))
+      plan.push_back(runOf(request, settings, hasher));
+  }
+  std::cerr << sessions.size() << " sessions, " << sessions.size() - plan.size()
+            << " of them already there\n";
+  return plan;
+}
+
+std::vector<evaluation::RunRecord> driveSessions(const std::vector<evaluation::PlannedRun>& plan,
+                                                 const CollectArguments& arguments,
+                                                 const std::atomic<bool>& stop) {
+  constexpr double kLongest = 86400.0;  // of one session, wall time [s]
+  evaluation::ExecutorOptions options;
+  options.results = fs::absolute(arguments.request.results);
+  options.timeout = kLongest;
+  BatchProgress progress(plan, arguments.engine.jobs);
+  return executeOn(arguments.engine, plan, options, false, progress, stop);
 }
 
 /// How many of the sessions have their scene, and how much room these take.
@@ -223,24 +217,43 @@ void describeScenes(const std::vector<CollectRequest>& sessions) {
   std::cerr << count << " scenes, " << core::formatFixed(1e-6 * bytes, 1) << " MB\n";
 }
 
+/// Sums up every session whose files are there, and says so on standard error; `code`: how the
+/// driving ended. Gives the exit code.
+int conclude(const CollectArguments& arguments, const std::vector<CollectRequest>& sessions,
+             int code) {
+  if (arguments.request.scenes) describeScenes(sessions);
+  if (!arguments.request.images) return code;
+  collection::StatisticsByName statistics;
+  for (const CollectRequest& request : sessions) {
+    const std::string name = collection::sessionName(collection::resolveCollection(request));
+    const fs::path file = collection::statisticsFile(request, name);
+    if (fs::exists(file)) statistics[name] = collection::readStatistics(file);
+  }
+  collection::describeDataset(arguments.request.results, collection::sumOf(statistics));
+  if (code == ExitCode::kPassed)
+    collection::requireSamples(statistics, "session", "longer sessions (--duration)");
+  return code;
+}
+
 int collect(const CollectArguments& arguments) {
   if (!arguments.bags.bags.empty()) return convertBags(arguments);
+  if (arguments.cancel) {
+    cancelEngine(arguments.request.results);
+    return ExitCode::kPassed;
+  }
+  requireEngine(arguments.engine);
   const std::vector<CollectRequest> sessions = planSessions(arguments);
   core::temporaryFolder();  // without one each session would fail
   const core::OutputFolder output(arguments.request.results, kLockedBy);
   if (arguments.request.images) core::OutputFolder::requireFree(output.path(), kDatasetFiles);
-  std::vector<SessionJob> jobs = jobsOf(sessions);
+  requireNoWorker(fs::absolute(arguments.request.results));
+  const auto plan = planOf(sessions);
   removeHalves(arguments.request.results);
   const std::atomic<bool>& stop = core::catchStopSignals();
-  driveSessions(jobs, arguments.jobs, stop);
+  const auto records = driveSessions(plan, arguments, stop);
   output.requireInPlace();
-  const int code = stop ? ExitCode::kInterrupted : exitCode(jobs);
-  if (arguments.request.scenes) describeScenes(sessions);
-  if (!arguments.request.images) return code;
-  const auto statistics = conclude(arguments, sessions);
-  if (code == ExitCode::kPassed)
-    collection::requireSamples(statistics, "session", "longer sessions (--duration)");
-  return code;
+  if (arguments.engine.prints()) return ExitCode::kPassed;
+  return conclude(arguments, sessions, stop ? ExitCode::kInterrupted : exitCode(records));
 }
 
 void addCommonOptions(CLI::App& command, CollectRequest& request) {
@@ -269,8 +282,9 @@ void addBagOptions(CLI::App& command, node_graph::BagRequest& request) {
       .add_option("--topics", request.topics,
                   "YAML file that names the bags' topics: image, odometry, control, path")
       ->needs(bags);
-  for (const char* name : {"--scenarios", "--suite", "--seeds", "--first-seed", "--jobs",
-                           "--duration", "--keep-bags", "--no-images", "--scenes", "--set"})
+  for (const char* name :
+       {"--scenarios", "--suite", "--seeds", "--first-seed", "--jobs", "--engine", "--slurm",
+        "--cancel", "--duration", "--keep-bags", "--no-images", "--scenes", "--set"})
     bags->excludes(command.get_option(name));
 }
 
@@ -278,6 +292,9 @@ void addBagOptions(CLI::App& command, node_graph::BagRequest& request) {
 
 void addCollectCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<CollectArguments>();
+  arguments->engine.command = "cdiff collect";
+  arguments->engine.go_on = "to go on once they have ended: the same command";
+  arguments->engine.fresh = true;
   CLI::App* command = program.add_subcommand(
       "collect", "Drive and record many vehicles, and make training samples of it");
   command
@@ -291,9 +308,9 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
   command->add_option("--first-seed", arguments->first_seed, "Seed of the first of them")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000000000));
-  command->add_option("--jobs", arguments->jobs, "Sessions at a time")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 64));
+  addEngineOptions(*command, arguments->engine);
+  command->add_flag("--cancel", arguments->cancel,
+                    "End the jobs of a data set on Slurm; the same command goes on with it");
   addCommonOptions(*command, arguments->request);
   addBagOptions(*command, arguments->bags);
   command->callback([arguments, &exit_code] { exit_code = collect(*arguments); });

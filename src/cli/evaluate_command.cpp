@@ -358,6 +358,7 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
       "--overwrite", arguments->overwrite, "Replace the results of an earlier batch in the folder");
   overwrite->excludes(resume);
   addEngineOptions(*command, arguments->engine);
+  addFreshOption(*command, arguments->engine);
   addJobOptions(*command, *arguments, {resume, overwrite});
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
 }

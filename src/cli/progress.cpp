@@ -14,6 +14,14 @@
 namespace cdiff::cli {
 namespace {
 
+/// Of a session that has ended: its verdict, and whether it had no CBV.
+std::string verdictText(const evaluation::RunRecord& record) {
+  const auto cbvs = record.measures.find(metrics::known::kCbvCount.name);
+  const bool none = cbvs != record.measures.end() && cbvs->second == 0.0;
+  return (record.complete() ? ", " + record::wordOf(record.verdict) : "") +
+         (none ? ", no CBV" : "");
+}
+
 double secondsBetween(std::chrono::steady_clock::time_point begin,
                       std::chrono::steady_clock::time_point end) {
   return std::chrono::duration<double>(end - begin).count();
@@ -53,6 +61,7 @@ void Progress::observe(const session::TickRecord& record) {
 
 BatchProgress::BatchProgress(const std::vector<evaluation::PlannedRun>& runs, int jobs)
     : total_(runs.size()),
+      sessions_(runs.empty() || runs.front().command.isSession()),
       remaining_(runs, jobs),
       terminal_(::isatty(STDERR_FILENO) == 1),
       begin_(std::chrono::steady_clock::now()) {}
@@ -64,6 +73,11 @@ void BatchProgress::repeated(const std::string& cause, const std::vector<std::st
             << core::joinText(shown, ", ");
   if (ids.size() > kShown) std::cerr << " and " << ids.size() - kShown << " more";
   std::cerr << "\n";
+}
+
+std::string BatchProgress::sessionsText(double wall) const {
+  return std::to_string(failed_) + (failed_ == 1 ? " verdict" : " verdicts") + " failed, " +
+         core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1) + " x real time, ";
 }
 
 void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
@@ -83,14 +97,11 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  const auto cbvs = record.measures.find(metrics::known::kCbvCount.name);
-  const bool none = cbvs != record.measures.end() && cbvs->second == 0.0;
   std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << broken_
-            << " broken, " << failed_ << (failed_ == 1 ? " verdict" : " verdicts") << " failed, "
-            << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1) << " x real time, "
+            << " broken, " << (sessions_ ? sessionsText(wall) : "")
             << core::formatFixed(remaining_.left(wall), 0) << " s left: " << record.id << " "
-            << record.status << (record.complete() ? ", " + record::wordOf(record.verdict) : "")
-            << (none ? ", no CBV" : "") << (record.cause.empty() ? "" : " (" + record.cause + ")")
+            << record.status << (sessions_ ? verdictText(record) : "")
+            << (record.cause.empty() ? "" : " (" + record.cause + ")")
             << (terminal_ && !record.failed() ? "" : "\n");
   std::cerr.flush();
 }

@@ -31,9 +31,9 @@ class Progress : public session::SessionObserver {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Progress of a batch on standard error, for `cdiff evaluate`: runs done and broken, failed
-/// verdicts, pace (x real time), wall time left, and of each run its verdict, and whether it had no
-/// CBV. On a terminal it rewrites one line; elsewhere it prints a line per run.
+/// Progress of a batch on standard error: runs done and broken, wall time left; where the runs are
+/// sessions also failed verdicts, pace (x real time), and of each its verdict, and whether it had
+/// no CBV. On a terminal it rewrites one line; elsewhere it prints a line per run.
 class BatchProgress {
  public:
   /// Of runs that are to be run, `jobs` at a time.
@@ -46,7 +46,11 @@ class BatchProgress {
   void finish() const;
 
  private:
+  /// What the runs say of themselves, where they are sessions; ends with ", ".
+  std::string sessionsText(double wall) const;
+
   std::size_t total_;
+  bool sessions_;  ///< what runs
   evaluation::RemainingTime remaining_;
   bool terminal_;
   std::chrono::steady_clock::time_point begin_;

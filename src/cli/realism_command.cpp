@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "cli/batch_engine.h"
 #include "cli/commands.h"
 #include "cli/realism_recordings.h"
 #include "core/file.h"
@@ -31,8 +32,9 @@ struct MatchedArguments {
   std::vector<std::string> seeds;
   std::vector<std::string> set;
   realism::ContinuationOptions options;
-  int jobs = 1;
+  EngineArguments engine;
   bool resume = false;
+  bool cancel = false;
 };
 
 struct ContinueArguments {
@@ -72,26 +74,47 @@ void requireMatchedFolder(const fs::path& folder, bool resume) {
                    "' holds earlier results; go on with them (--resume) or give another --results");
 }
 
-int matched(const MatchedArguments& arguments) {
+evaluation::MatrixOptions matrixOf(const MatchedArguments& arguments) {
+  if (arguments.matrix.empty()) throw InputError("give a matrix: a file or a shipped evaluation");
   evaluation::MatrixOptions matrix = evaluation::loadMatrix(arguments.matrix);
   if (!arguments.seeds.empty()) matrix.seeds = arguments.seeds;
   matrix.set.insert(matrix.set.end(), arguments.set.begin(), arguments.set.end());
+  return matrix;
+}
+
+/// Runs the jobs on the engine; gives how they ended.
+std::vector<realism::MatchedEnd> runMatched(const std::vector<realism::MatchedJob>& jobs,
+                                            const MatchedArguments& arguments,
+                                            const fs::path& folder) {
+  constexpr double kLongest = 3600.0;  // of one job [s]
+  std::vector<evaluation::PlannedRun> plan;
+  for (const realism::MatchedJob& job : jobs) plan.push_back(job.run);
+  evaluation::ExecutorOptions options;
+  options.results = folder;
+  options.timeout = kLongest;
+  options.resume = arguments.resume;
+  BatchProgress progress(plan, arguments.engine.jobs);
+  const auto records =
+      executeOn(arguments.engine, plan, options, false, progress, core::catchStopSignals());
+  return realism::endsOf(records, folder);
+}
+
+int matched(const MatchedArguments& arguments) {
+  if (arguments.cancel) {
+    cancelEngine(arguments.results);
+    return ExitCode::kPassed;
+  }
+  requireEngine(arguments.engine);
+  const evaluation::MatrixOptions matrix = matrixOf(arguments);
   const fs::path folder = fs::absolute(arguments.results);
   requireMatchedFolder(folder, arguments.resume);
-  const auto jobs = realism::planMatched(evaluation::planRuns(matrix, arguments.matrix));
+  const auto jobs =
+      realism::planMatched(evaluation::planRuns(matrix, arguments.matrix), arguments.options);
   core::OutputFolder output(folder, "cdiff realism matched");
-  realism::MatchedExecution execution;
-  execution.results = folder;
-  execution.options = arguments.options;
-  execution.jobs = arguments.jobs;
-  execution.resume = arguments.resume;
-  std::size_t done = 0;
-  execution.ended = [&](const realism::MatchedJob& job, const realism::MatchedEnd& end) {
-    std::cerr << "[" << ++done << "/" << jobs.size() << "] " << job.id << ": "
-              << (end.score ? (end.resumed ? "resumed" : "done") : end.cause) << "\n";
-  };
+  requireNoWorker(folder);
   std::cerr << evaluation::recordOpening(matrix, folder);
-  const auto ends = realism::runMatched(jobs, execution, core::catchStopSignals());
+  const auto ends = runMatched(jobs, arguments, folder);
+  if (arguments.engine.prints()) return ExitCode::kPassed;
   const auto rows = realism::matchedRows(jobs, ends);
   writeResult(output, realism::matchedJson(rows, arguments.options),
               realism::matchedMarkdown(rows, arguments.options),
@@ -148,17 +171,23 @@ void addMatched(CLI::App* realism, int& exit_code) {
   auto arguments = std::make_shared<MatchedArguments>();
   CLI::App* command = realism->add_subcommand(
       "matched", "Rollouts from the first hand-over against PDM-Lite (realism_matched)");
-  command->add_option("matrix", arguments->matrix, "Matrix file or shipped evaluation")->required();
+  arguments->engine.command = "cdiff realism matched";
+  arguments->engine.go_on = "to go on once they have ended: the same command with --resume";
+  arguments->engine.fresh = true;
+  command->add_option("matrix", arguments->matrix, "Matrix file or shipped evaluation");
   command->add_option("--results", arguments->results, "Result folder")->required();
   command->add_option("--seeds", arguments->seeds, "Root seeds instead of the matrix's")
       ->delimiter(',');
   command
       ->add_option("--set", arguments->set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--jobs", arguments->jobs, "Processes at a time")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 64));
-  command->add_flag("--resume", arguments->resume, "Keep the scores of jobs that are the same");
+  addEngineOptions(*command, arguments->engine);
+  CLI::Option* resume =
+      command->add_flag("--resume", arguments->resume, "Keep the scores of jobs that are the same");
+  command
+      ->add_flag("--cancel", arguments->cancel,
+                 "End the jobs of a folder on Slurm; --resume goes on with it")
+      ->excludes(resume);
   addRollouts(command, arguments->options);
   command->callback([arguments, &exit_code] { exit_code = matched(*arguments); });
 }

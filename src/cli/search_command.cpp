@@ -193,6 +193,7 @@ void addSearchCommand(CLI::App& program, int& exit_code) {
   addRequestOptions(*command, *arguments);
   addOverrideOptions(*command, arguments->request);
   addEngineOptions(*command, arguments->engine);
+  addFreshOption(*command, arguments->engine);
   CLI::Option* resume =
       command->add_flag("--resume", arguments->resume,
                         "Go on with the search in the folder; --budget may be larger than before");

@@ -56,7 +56,7 @@ int work(const WorkerArguments& arguments) {
 void addWorkerCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<WorkerArguments>();
   CLI::App* command = program.add_subcommand(
-      "worker", "Run sessions that cdiff evaluate has planned, beside workers on other hosts");
+      "worker", "Run what a batch has planned (--engine print), beside workers on other hosts");
   command->add_option("results", arguments->results, "Result folder of the batch, on a shared disk")
       ->required();
   command->add_option("--part", arguments->part,

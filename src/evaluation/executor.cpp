@@ -85,8 +85,9 @@ bool Executor::staysOrIsCounted(std::size_t index) {
   const auto earlier = readRecord(folderOf(index) / "record.json");
   if (!earlier) return false;
   std::string cause = causeToRepeat(*earlier, plan_[index]);
-  if (cause.empty() && !fs::is_regular_file(folderOf(index) / "summary.json"))
-    cause = "summary.json missing";
+  const std::string& result = plan_[index].command.result;
+  if (cause.empty() && !result.empty() && !fs::is_regular_file(folderOf(index) / result))
+    cause = result + " missing";
   if (!cause.empty()) {
     if (isChosen(index)) repeated_[cause].push_back(plan_[index].id);
     return false;

@@ -16,7 +16,7 @@
 
 namespace cdiff::evaluation {
 
-/// How `cdiff evaluate` runs a plan: how its workers do, what an earlier batch leaves to do, and
+/// How a command runs a plan: how its workers do, what an earlier batch leaves to do, and
 /// whom it informs.
 struct ExecutorOptions : WorkerOptions {
   bool resume = false;  ///< complete records of the same scenario, inputs and program stay

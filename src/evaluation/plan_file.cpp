@@ -38,7 +38,7 @@ PlanFile readPlan(const fs::path& results) {
   const fs::path file = results / PlanFile::kName;
   if (!core::isFile(file)) {
     throw core::InputError("'" + results.string() + "' has no " + PlanFile::kName +
-                           "; expected the result folder of a cdiff evaluate that is under way");
+                           "; expected the result folder of a batch that is under way");
   }
   try {
     const auto json = nlohmann::json::parse(core::readFile(file, "plan"));
@@ -51,8 +51,9 @@ PlanFile readPlan(const fs::path& results) {
     plan.ids = json.at("runs").get<std::vector<std::string>>();
     return plan;
   } catch (const nlohmann::json::exception& error) {
-    throw core::InputError("'" + file.string() + "' is no plan of a batch: " + error.what() +
-                           "; write it again with cdiff evaluate --resume");
+    throw core::InputError(
+        "'" + file.string() + "' is no plan of a batch: " + error.what() +
+        "; write it again with the command that planned it (cdiff evaluate: with --resume)");
   }
 }
 

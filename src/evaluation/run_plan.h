@@ -54,14 +54,32 @@ using Factors = std::map<std::string, std::string>;
 /// "seed", "repetition".
 const std::vector<std::string>& factorNames();
 
-/// One session of a matrix that is to be run: its factors, and the resolved scenario with hashes of
-/// its inputs.
+/// What a process of a batch is asked to do.
+struct RunCommand {
+  /// Arguments of the program. One that begins with "{run}" has the folder of the run there, and
+  /// one that begins with "{results}" that of the batch.
+  std::vector<std::string> words = {"run",   "{run}/scenario.yaml", "--quiet", "--results",
+                                    "{run}", "--overwrite"};
+  /// File in the run's folder that it leaves; empty: what it leaves lies elsewhere.
+  std::string result = "summary.json";
+
+  /// Whether it runs a session whose summary is the run's result. Else the exit code 0 is all that
+  /// is asked.
+  bool isSession() const { return words.front() == "run"; }
+  bool operator==(const RunCommand& other) const {
+    return words == other.words && result == other.result;
+  }
+};
+
+/// One run that is to come: of a session of a matrix, or of another command. It has its factors,
+/// and the resolved scenario with hashes of its inputs.
 struct PlannedRun {
   std::string id;  ///< name of its folder; made of the factors that vary
   Factors factors;
   std::string scenario_text;    ///< resolved, as YAML
   std::string scenario_sha256;  ///< SHA-256 of that text
   InputHashes inputs;           ///< hashes of what it depends on besides
+  RunCommand command = {};
 };
 
 /// Scenarios outermost, repetitions innermost. `source` names the matrix in errors. Throws

@@ -143,6 +143,8 @@ RunRecord fromJson(const Json& json) {
   }
   record.scenario_sha256 = json.at("scenario_sha256");
   if (json.contains("inputs")) record.inputs = json.at("inputs").get<InputHashes>();
+  if (json.contains("command"))
+    record.command = {json.at("command").at("words"), json.at("command").at("result")};
   record.status = json.at("status");
   record.cause = json.at("cause");
   record.exit_code = json.at("exit_code");
@@ -166,6 +168,7 @@ std::string causeToRepeat(const RunRecord& earlier, const PlannedRun& planned) {
   if (earlier.status == "not_run") return "not run yet";
   if (!earlier.complete()) return "status " + earlier.status;
   if (earlier.scenario_sha256 != planned.scenario_sha256) return "scenario changed";
+  if (!(earlier.command == planned.command)) return "command changed";
   if (earlier.inputs.empty() && !planned.inputs.empty())
     return "recorded by a version that kept no hashes of its inputs";
   const std::string changed = changedInputs(earlier.inputs, planned.inputs);
@@ -178,6 +181,7 @@ RunRecord recordOf(const PlannedRun& run) {
   record.factors = run.factors;
   record.scenario_sha256 = run.scenario_sha256;
   record.inputs = run.inputs;
+  record.command = run.command;
   return record;
 }
 
@@ -186,21 +190,23 @@ std::string recordJson(const RunRecord& record) {
   for (const std::string& factor : factorNames()) factors[factor] = record.factors.at(factor);
   Json measures = Json::object();
   for (const auto& [name, value] : record.measures) measures[name] = value;
-  const Json json = {{"schema_version", 1},
-                     {"id", record.id},
-                     {"factors", factors},
-                     {"scenario_sha256", record.scenario_sha256},
-                     {"inputs", record.inputs},
-                     {"status", record.status},
-                     {"cause", record.cause},
-                     {"exit_code", record.exit_code},
-                     {"attempts", record.attempts},
-                     {"wall_seconds", record.wall_seconds},
-                     {"simulated_seconds", record.simulated_seconds},
-                     {"verdict", record::toText(record.verdict)},
-                     {"reasons", record.reasons},
-                     {"decided_by", record.decided_by},
-                     {"figures", measures}};
+  Json json = {{"schema_version", 1},
+               {"id", record.id},
+               {"factors", factors},
+               {"scenario_sha256", record.scenario_sha256},
+               {"inputs", record.inputs},
+               {"status", record.status},
+               {"cause", record.cause},
+               {"exit_code", record.exit_code},
+               {"attempts", record.attempts},
+               {"wall_seconds", record.wall_seconds},
+               {"simulated_seconds", record.simulated_seconds},
+               {"verdict", record::toText(record.verdict)},
+               {"reasons", record.reasons},
+               {"decided_by", record.decided_by},
+               {"figures", measures}};
+  if (!record.command.isSession())
+    json["command"] = {{"words", record.command.words}, {"result", record.command.result}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -218,7 +224,8 @@ std::vector<RunRecord> readRecords(const fs::path& results) {
   std::vector<RunRecord> records;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(results / "runs", error)) {
-    if (auto record = readRecord(entry.path() / "record.json")) records.push_back(*record);
+    const auto record = readRecord(entry.path() / "record.json");
+    if (record && record->command.isSession()) records.push_back(*record);
   }
   if (records.empty()) {
     throw core::InputError("'" + results.string() +

@@ -45,7 +45,8 @@ struct RunRecord {
   std::string id;
   Factors factors;
   std::string scenario_sha256;
-  InputHashes inputs;              ///< empty in a record of an earlier version
+  InputHashes inputs;  ///< empty in a record of an earlier version
+  RunCommand command;
   std::string status = "not_run";  ///< status of the session; or "error", "interrupted", "not_run"
   std::string cause;               ///< cause of an error
   int exit_code = -1;
@@ -76,8 +77,8 @@ RunRecord recordOf(const PlannedRun& run);
 std::string recordJson(const RunRecord& record);
 /// nullopt when the file is absent. Throws InputError naming a file that is not a record.
 std::optional<RunRecord> readRecord(const std::filesystem::path& file);
-/// Records of a batch's result folder by id. Throws InputError when it holds none, or one that is
-/// damaged.
+/// Records of the sessions in a batch's result folder by id. Throws InputError when it holds none,
+/// or one that is damaged.
 std::vector<RunRecord> readRecords(const std::filesystem::path& results);
 
 /// A contact of the ego, as a run's summary.json has it.

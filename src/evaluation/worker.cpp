@@ -24,6 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 using core::ExitCode;
 
+constexpr const char* kPlanAgain =
+    "; plan it again with the command that planned it (cdiff evaluate: with --resume)";
 /// Between two looks at the runs that other workers have.
 constexpr std::chrono::milliseconds kLookPeriod{200};
 
@@ -56,6 +58,18 @@ SummaryFacts factsIn(const fs::path& folder) {
   return facts;
 }
 
+/// Takes the end of a run without a summary, whose process says that all went well.
+void describeWithoutSummary(RunRecord& record, const std::string& fault, const fs::path& folder) {
+  const RunCommand& command = record.command;
+  const bool is_there =
+      !command.isSession() && (command.result.empty() || core::isFile(folder / command.result));
+  record.status = is_there ? "completed" : "error";
+  if (is_there)
+    record.verdict = record::Outcome::kNotJudged;
+  else
+    record.cause = fault.empty() ? "the run left no " + command.result : fault;
+}
+
 /// Status, cause and measures of a run that has ended.
 void describeEnd(RunRecord& record, const core::ProcessEnd& end, const fs::path& folder,
                  double timeout) {
@@ -65,17 +79,13 @@ void describeEnd(RunRecord& record, const core::ProcessEnd& end, const fs::path&
     record.cause = "timed out: killed after " + core::formatNumber(timeout) + " s";
     return;
   }
-  const SummaryFacts facts = factsIn(folder);
+  const SummaryFacts facts = record.command.isSession() ? factsIn(folder) : SummaryFacts();
   if (record.exit_code == ExitCode::kInterrupted || end.interrupted) record.status = "interrupted";
   if (record.exit_code != ExitCode::kPassed && record.exit_code != ExitCode::kVerdictFailed) {
     if (record.failed()) record.cause = causeOf(record.exit_code, facts.fault, folder / "log.txt");
     return;
   }
-  if (facts.status.empty()) {
-    record.status = "error";
-    record.cause = facts.fault.empty() ? "the run left no summary.json" : facts.fault;
-    return;
-  }
+  if (facts.status.empty()) return describeWithoutSummary(record, facts.fault, folder);
   record.status = facts.status;
   record.verdict = facts.verdict;
   record.reasons = facts.reasons;
@@ -97,6 +107,21 @@ void setAside(const fs::path& results, const std::string& id) {
   core::OutputFolder fresh(old);
   fresh.write("scenario.yaml", scenario);
   fresh.write("record.json", record);
+}
+
+/// Arguments of the program, with the folders in the place of their names.
+std::vector<std::string> wordsFor(const RunCommand& command, const fs::path& results,
+                                  const fs::path& run) {
+  const std::pair<std::string, fs::path> folders[] = {{"{run}", run}, {"{results}", results}};
+  std::vector<std::string> words = command.words;
+  for (std::string& word : words) {
+    for (const auto& [name, folder] : folders) {
+      if (word.rfind(name, 0) != 0) continue;
+      word = folder.string() + word.substr(name.size());
+      break;
+    }
+  }
+  return words;
 }
 
 /// Runs are addressed by their place in the list of ids.
@@ -137,9 +162,8 @@ class Worker {
   RunRecord recordAt(std::size_t index) const {
     const fs::path file = folderOf(index) / "record.json";
     if (auto record = readRecord(file)) return *record;
-    throw core::InputError("'" + file.string() +
-                           "' is missing, but the run is planned; plan it "
-                           "again with cdiff evaluate --resume");
+    throw core::InputError("'" + file.string() + "' is missing, but the run is planned" +
+                           kPlanAgain);
   }
   /// Whether it needs nothing any more; then it is announced.
   bool isDone(const RunRecord& record) const {
@@ -152,12 +176,11 @@ class Worker {
     if (held_.count(index) == 0 ? !claim(index) : isLost(index)) return std::nullopt;
     const fs::path folder = folderOf(index);
     core::OutputFolder output(folder);
-    output.remove({"summary.json", "log.txt"});
+    RunRecord& record = held_.at(index).record;
+    output.remove({record.command.result, "log.txt"});
     output.removeUnfinished();
-    ++held_.at(index).record.attempts;
-    return core::ProcessJob{options_.program,
-                            {"run", (folder / "scenario.yaml").string(), "--quiet", "--results",
-                             folder.string(), "--overwrite"},
+    ++record.attempts;
+    return core::ProcessJob{options_.program, wordsFor(record.command, options_.results, folder),
                             output.claim("log.txt")};
   }
 
@@ -183,8 +206,8 @@ class Worker {
       setAside(options_.results, ids_[index]);
     else
       core::FolderLock::removeLeftBehind(folderOf(index));  // of a session that was killed
-    RunRecord next =
-        recordOf({record.id, record.factors, "", record.scenario_sha256, record.inputs});
+    RunRecord next = recordOf(
+        {record.id, record.factors, "", record.scenario_sha256, record.inputs, record.command});
     if (options_.compares_inputs && refusesInputs(index, next)) return false;
     held_[index] = {std::move(lease), std::move(next)};
     return true;
@@ -204,7 +227,7 @@ class Worker {
 
   /// What differs from what was planned; empty where nothing does.
   std::string changedText(const fs::path& file, const RunRecord& record) {
-    const std::string again = "; plan it again with cdiff evaluate --resume";
+    const std::string again = kPlanAgain;
     try {
       const std::string text = core::readFile(file, "scenario");
       if (core::sha256(text) != record.scenario_sha256)

@@ -16,8 +16,7 @@ namespace cdiff::evaluation {
 
 /// How a worker runs planned sessions: which program, how many at a time, how long each.
 struct WorkerOptions {
-  std::filesystem::path program =
-      "/proc/self/exe";  ///< understands `run FILE --quiet --results DIR --overwrite`
+  std::filesystem::path program = "/proc/self/exe";  ///< understands the runs' commands
   /// Arguments that make the program a server for sessions, which starts once and forks a child for
   /// each (core/fork_server.h); empty: the program starts afresh for each.
   std::vector<std::string> server = {};

@@ -2,16 +2,14 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "realism/matched_realism.h"
 
-#include <deque>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/file.h"
-#include "core/output_folder.h"
-#include "core/process_pool.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/worker.h"
 
 namespace cdiff::realism {
 namespace {
@@ -21,7 +19,6 @@ using core::InputError;
 using nlohmann::json;
 
 constexpr const char* kScoreFile = "score.json";
-constexpr const char* kJobFile = "job.json";
 constexpr const char* kSumo = "sumo";
 constexpr const char* kSumoRow = "SUMO background";
 
@@ -50,95 +47,17 @@ void requireOneEgo(const std::vector<evaluation::PlannedRun>& runs) {
   }
 }
 
-/// All that a score depends on, as text.
-std::string jobText(const MatchedJob& job, const ContinuationOptions& options) {
-  const json text = {{"schema_version", 1},
-                     {"driver", job.driver},
-                     {"planner", job.planner},
-                     {"scenario", job.run.factors.at("scenario")},
-                     {"seed", job.run.factors.at("seed")},
-                     {"scenario_sha256", job.run.scenario_sha256},
-                     {"inputs", job.run.inputs},
-                     {"rollouts", options.rollouts},
-                     {"seconds", options.seconds}};
-  return text.dump(2) + "\n";
+/// The run of a driver's job.
+evaluation::PlannedRun runOf(const evaluation::PlannedRun& run, const std::string& driver,
+                             const ContinuationOptions& options) {
+  evaluation::PlannedRun job = run;
+  job.factors["cbv_planner"] = driver;
+  job.command = {{"realism", "continue", "{run}/scenario.yaml", "--driver", driver, "--rollouts",
+                  std::to_string(options.rollouts), "--seconds",
+                  core::formatNumber(options.seconds), "--out", std::string("{run}/") + kScoreFile},
+                 kScoreFile};
+  return job;
 }
-
-std::string lastLine(const fs::path& log) {
-  if (!core::isFile(log)) return "no output";
-  const auto lines = core::splitText(core::readFile(log, "log"), '\n');
-  return lines.empty() ? "no output" : lines.back();
-}
-
-class MatchedRunner {
- public:
-  MatchedRunner(const std::vector<MatchedJob>& jobs, const MatchedExecution& execution,
-                const std::atomic<bool>& stop)
-      : jobs_(jobs), execution_(execution), stop_(stop), ends_(jobs.size()) {}
-
-  std::vector<MatchedEnd> run() {
-    std::deque<std::size_t> queue;
-    for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      ends_[i].cause = "not run";
-      if (!stays(i)) queue.push_back(i);
-    }
-    core::runProcesses(queue, {execution_.jobs, execution_.timeout, 20.0}, stop_,
-                       {[this](std::size_t job) { return start(job); },
-                        [this](const core::ProcessEnd& end) { return finish(end); }});
-    return std::move(ends_);
-  }
-
- private:
-  fs::path folderOf(std::size_t job) const { return execution_.results / "runs" / jobs_[job].id; }
-
-  bool stays(std::size_t job) {
-    const fs::path folder = folderOf(job);
-    const bool same =
-        execution_.resume && core::isFile(folder / kJobFile) && core::isFile(folder / kScoreFile) &&
-        core::readFile(folder / kJobFile, "job") == jobText(jobs_[job], execution_.options);
-    if (!same) return false;
-    ends_[job] = {readScore(folder / kScoreFile), "", true};
-    if (execution_.ended) execution_.ended(jobs_[job], ends_[job]);
-    return true;
-  }
-
-  core::ProcessJob start(std::size_t job) {
-    core::OutputFolder runs(core::OutputFolder(execution_.results).subfolder("runs"));
-    core::OutputFolder output(runs.subfolder(jobs_[job].id));
-    const fs::path folder = output.path();
-    output.remove({kScoreFile, "log.txt"});
-    output.write("scenario.yaml", jobs_[job].run.scenario_text);
-    output.write(kJobFile, jobText(jobs_[job], execution_.options));
-    const std::string& planner = jobs_[job].planner;
-    return {execution_.program,
-            {"realism", "continue", (folder / "scenario.yaml").string(), "--driver",
-             planner.empty() ? kSumo : planner, "--rollouts",
-             std::to_string(execution_.options.rollouts), "--seconds",
-             core::formatNumber(execution_.options.seconds), "--out",
-             output.claim(kScoreFile).string()},
-            output.claim("log.txt")};
-  }
-
-  bool finish(const core::ProcessEnd& end) {
-    const fs::path folder = folderOf(end.job);
-    MatchedEnd& done = ends_[end.job];
-    if (end.exit_code == 0 && core::isFile(folder / kScoreFile)) {
-      done = {readScore(folder / kScoreFile), "", false};
-    } else {
-      done.cause = end.interrupted ? "interrupted"
-                   : end.timed_out ? "timed out"
-                                   : "exit code " + std::to_string(end.exit_code) + ": " +
-                                         lastLine(folder / "log.txt");
-    }
-    if (execution_.ended) execution_.ended(jobs_[end.job], done);
-    return false;
-  }
-
-  const std::vector<MatchedJob>& jobs_;
-  const MatchedExecution& execution_;
-  const std::atomic<bool>& stop_;
-  std::vector<MatchedEnd> ends_;
-};
 
 /// What is gathered of one driver.
 struct Gathered {
@@ -174,23 +93,35 @@ MatchedRow rowOf(const Gathered& gathered) {
 
 }  // namespace
 
-std::vector<MatchedJob> planMatched(const std::vector<evaluation::PlannedRun>& runs) {
+std::vector<MatchedJob> planMatched(const std::vector<evaluation::PlannedRun>& runs,
+                                    const ContinuationOptions& options) {
   requireOneEgo(runs);
   std::vector<MatchedJob> jobs;
   std::map<SessionKey, bool> with_sumo;
   for (const evaluation::PlannedRun& run : runs) {
-    MatchedJob job{run.id, driverOf(run), run.factors.at("cbv_planner"), run};
-    if (with_sumo.emplace(sessionOf(job), true).second)
-      jobs.push_back({run.id + "__sumo", kSumoRow, "", run});
+    const std::string& planner = run.factors.at("cbv_planner");
+    MatchedJob job{driverOf(run), planner, runOf(run, planner, options)};
+    if (with_sumo.emplace(sessionOf(job), true).second) {
+      jobs.push_back({kSumoRow, "", runOf(run, kSumo, options)});
+      jobs.back().run.id += "__sumo";
+    }
     jobs.push_back(std::move(job));
   }
   return jobs;
 }
 
-std::vector<MatchedEnd> runMatched(const std::vector<MatchedJob>& jobs,
-                                   const MatchedExecution& execution,
-                                   const std::atomic<bool>& stop) {
-  return MatchedRunner(jobs, execution, stop).run();
+std::vector<MatchedEnd> endsOf(const std::vector<evaluation::RunRecord>& records,
+                               const fs::path& results) {
+  std::vector<MatchedEnd> ends;
+  for (const evaluation::RunRecord& record : records) {
+    MatchedEnd end;
+    if (record.complete())
+      end.score = readScore(evaluation::runFolder(results, record.id) / kScoreFile);
+    else
+      end.cause = record.cause.empty() ? record.status : record.cause;
+    ends.push_back(std::move(end));
+  }
+  return ends;
 }
 
 std::string scoreJson(const ContinuationScore& score) {
@@ -242,7 +173,7 @@ std::vector<MatchedRow> matchedRows(const std::vector<MatchedJob>& jobs,
         ends[first].score->objects == ends[i].score->objects) {
       continue;
     }
-    throw InputError("'" + jobs[first].id + "' and '" + jobs[i].id +
+    throw InputError("'" + jobs[first].run.id + "' and '" + jobs[i].run.id +
                      "' have different first hand-overs: the matrix must change nothing but who "
                      "drives the CBVs (planner, mode, method, guidance)");
   }

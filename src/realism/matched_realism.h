@@ -2,14 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <atomic>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "evaluation/run_plan.h"
+#include "evaluation/run_record.h"
 #include "evaluation/statistics.h"
 #include "realism/continuation.h"
 
@@ -20,39 +18,26 @@ namespace cdiff::realism {
 /// ceiling. The evaluated objects are the CBVs of the first hand-over.
 /// One driver in one session.
 struct MatchedJob {
-  std::string id;       ///< name of its folder
-  std::string driver;   ///< row of the table
-  std::string planner;  ///< that drives; empty: SUMO
-  evaluation::PlannedRun run;
+  std::string driver;          ///< row of the table
+  std::string planner;         ///< that drives; empty: SUMO
+  evaluation::PlannedRun run;  ///< its command is `cdiff realism continue`
 };
 
 /// A job for each run, and one of SUMO for each scenario and seed. Throws InputError for runs that
 /// differ in the ego's planner.
-std::vector<MatchedJob> planMatched(const std::vector<evaluation::PlannedRun>& runs);
+std::vector<MatchedJob> planMatched(const std::vector<evaluation::PlannedRun>& runs,
+                                    const ContinuationOptions& options);
 
 /// How a job ended.
 struct MatchedEnd {
   std::optional<ContinuationScore> score;  ///< absent for a job that broke or was stopped
   std::string cause;                       ///< why there is none
-  bool resumed = false;
 };
 
-/// How the jobs are run.
-struct MatchedExecution {
-  std::filesystem::path program =
-      "/proc/self/exe";           ///< understands `realism continue FILE --driver NAME ...`
-  std::filesystem::path results;  ///< result folder
-  ContinuationOptions options;
-  int jobs = 1;             ///< processes at a time
-  double timeout = 3600.0;  ///< wall time of one job [s]
-  bool resume = false;      ///< scores of the same job stay
-  std::function<void(const MatchedJob&, const MatchedEnd&)> ended = {};
-};
-
-/// Ends in the order of jobs. Once `stop` is true no job is started.
-std::vector<MatchedEnd> runMatched(const std::vector<MatchedJob>& jobs,
-                                   const MatchedExecution& execution,
-                                   const std::atomic<bool>& stop);
+/// How the jobs ended, in their order; `records`: what an engine gives of their runs. Throws
+/// InputError naming a score that cannot be read.
+std::vector<MatchedEnd> endsOf(const std::vector<evaluation::RunRecord>& records,
+                               const std::filesystem::path& results);
 
 std::string scoreJson(const ContinuationScore& score);
 /// Throws InputError naming the file.

@@ -99,5 +99,49 @@ TEST_F(WorkerCommand, RefusesAnotherBuildOtherFilesAndAFolderWithoutPlan) {
   EXPECT_EQ(statusOf(""), "not_run");
 }
 
+TEST_F(WorkerCommand, DrivesSessionsOfACollection) {
+  const auto collect = [&](const std::string& data, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"collect",   "--scenarios", "arterial_exit,roundabout_entry",
+                                      "--results", data,          "--duration",
+                                      "6"};
+    words.insert(words.end(), more.begin(), more.end());
+    return cdiff(words);
+  };
+  ASSERT_EQ(collect(results_, {"--engine", "print"}), 0) << output();
+  EXPECT_FALSE(fs::exists(fs::path(results_) / "shards"));
+  ASSERT_EQ(cdiff({"worker", results_}), 0) << output();
+  ASSERT_EQ(collect(results_, {}), 0) << output();
+  expectOutput("2 sessions, 2 of them already there");
+  const std::string local = folder("local");
+  ASSERT_EQ(collect(local, {"--jobs", "2"}), 0) << output();
+  for (const char* name : {"shards/arterial_exit_seed1.shard",
+                           "shards/roundabout_entry_seed1.shard", "statistics.json"})
+    EXPECT_EQ(core::readFile(fs::path(results_) / name, name),
+              core::readFile(fs::path(local) / name, name))
+        << name;
+  EXPECT_EQ(cdiff({"report", results_}), 3) << "its records are of no sessions of an evaluation";
+}
+
+TEST_F(WorkerCommand, ScoresDriversOfARealismMatrix) {
+  const std::string matrix = write("matrix.yaml",
+                                   "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nset: "
+                                   "[protocol.time_limit=30, pdm_lite.cbv_speed_spread=0.1]\n");
+  const auto matched = [&](const std::string& results, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"realism",    "matched", matrix,      "--results", results,
+                                      "--rollouts", "2",       "--seconds", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return cdiff(words);
+  };
+  ASSERT_EQ(matched(results_, {"--engine", "print"}), 0) << output();
+  EXPECT_FALSE(fs::exists(fs::path(results_) / "realism.json"));
+  ASSERT_EQ(cdiff({"worker", results_, "--jobs", "2"}), 0) << output();
+  ASSERT_EQ(matched(results_, {"--resume"}), 0) << output();
+  expectOutput("2 runs were complete already");
+  const std::string local = folder("local");
+  ASSERT_EQ(matched(local, {}), 0) << output();
+  EXPECT_EQ(core::readFile(fs::path(results_) / "realism.json", "result"),
+            core::readFile(fs::path(local) / "realism.json", "result"));
+}
+
 }  // namespace
 }  // namespace cdiff::evaluation

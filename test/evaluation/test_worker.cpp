@@ -63,6 +63,7 @@ class WorkerTest : public testing::Test {
   test::TemporaryFolder scratch_;
   WorkerOptions options_;
   std::vector<PlannedRun> plan_;
+  std::set<std::string> causes_;  ///< of repeated runs
   std::vector<std::string> ids_;
   std::atomic<bool> stop_{false};
 };
@@ -150,6 +151,34 @@ TEST_F(WorkerTest, WritesNoRecordOfARunThatWasTakenFromIt) {
   work();
   EXPECT_EQ(starts("good0"), 1U);
   EXPECT_EQ(record("good0").status, "not_run");
+}
+
+TEST_F(WorkerTest, RunsOtherCommandsAndAsksForTheirFileAlone) {
+  options_.program = "/bin/sh";
+  plan_ = test::fakePlan({"leaves", "leaves_none", "fails", "elsewhere"});
+  const std::string scripts[] = {"echo 1 > $0/score.json", "true", "echo no >&2; exit 3",
+                                 "echo 1 > $1/shard"};
+  for (std::size_t i = 0; i < plan_.size(); ++i)
+    plan_[i].command = {{"-c", scripts[i], "{run}", "{results}"}, i < 3 ? "score.json" : ""};
+  ExecutorOptions options;
+  static_cast<WorkerOptions&>(options) = options_;
+  const auto records = executeRuns(plan_, options, stop_);
+  EXPECT_EQ(records[0].status, "completed");
+  EXPECT_EQ(records[0].verdict, record::Outcome::kNotJudged);
+  EXPECT_EQ(records[1].cause, "the run left no score.json");
+  EXPECT_EQ(records[2].exit_code, 3);
+  EXPECT_EQ(records[2].cause, "exit code 3: no");
+  EXPECT_EQ(records[3].status, "completed");
+  EXPECT_TRUE(fs::exists(options_.results / "shard"));
+  EXPECT_TRUE(record("leaves0").command == plan_[0].command) << "as a worker elsewhere reads it";
+  EXPECT_THROW(readRecords(options_.results), core::InputError) << "none is of a session";
+  options.resume = true;
+  plan_[0].command.words[1] += "; true";
+  options.repeated = [&](const std::string& cause, const std::vector<std::string>&) {
+    causes_.insert(cause);
+  };
+  executeRuns(plan_, options, stop_);
+  EXPECT_EQ(causes_, (std::set<std::string>{"command changed", "status error"}));
 }
 
 TEST_F(WorkerTest, RefusesAPlanOfAnotherBuildOrMachine) {

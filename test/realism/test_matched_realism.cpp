@@ -36,28 +36,28 @@ MatchedEnd ended(double speed, double collision, std::uint64_t tick = 40) {
 }
 
 TEST(MatchedPlan, AddsSumoOnceForEachSession) {
-  const auto jobs =
-      planMatched({run("a", "pdm_lite"), run("a", "diffusion"), run("b", "diffusion", "paper")});
+  const auto jobs = planMatched(
+      {run("a", "pdm_lite"), run("a", "diffusion"), run("b", "diffusion", "paper")}, {});
   ASSERT_EQ(jobs.size(), 5U);
   EXPECT_EQ(jobs[0].driver, "SUMO background");
   EXPECT_TRUE(jobs[0].planner.empty());
   EXPECT_EQ(jobs[1].driver, "PDM-Lite, naturalistic");
-  EXPECT_EQ(jobs[3].id, "b__diffusionpaper__sumo");
+  EXPECT_EQ(jobs[3].run.id, "b__diffusionpaper__sumo");
   EXPECT_EQ(jobs[4].driver, "paper");
   auto other = run("c", "diffusion");
   other.factors["ego_planner"] = "diffusion";
-  EXPECT_THROW(planMatched({run("a", "pdm_lite"), other}), core::InputError);
+  EXPECT_THROW(planMatched({run("a", "pdm_lite"), other}, {}), core::InputError);
 }
 
 TEST(MatchedRows, AverageOverScenariosAndNameTheCeiling) {
-  const std::vector<MatchedJob> jobs = {{"1", "PDM-Lite", "pdm_lite", run("a", "pdm_lite")},
-                                        {"2", "mine", "diffusion", run("a", "diffusion")},
-                                        {"3", "PDM-Lite", "pdm_lite", run("b", "pdm_lite")},
-                                        {"4", "mine", "diffusion", run("b", "diffusion")}};
+  const std::vector<MatchedJob> jobs = {{"PDM-Lite", "pdm_lite", run("a", "pdm_lite")},
+                                        {"mine", "diffusion", run("a", "diffusion")},
+                                        {"PDM-Lite", "pdm_lite", run("b", "pdm_lite")},
+                                        {"mine", "diffusion", run("b", "diffusion")}};
   MatchedEnd without;
   without.score.emplace();
   const auto rows =
-      matchedRows(jobs, {ended(0.6, 0.9), ended(0.3, 0.6), without, {{}, "exit code 2", false}});
+      matchedRows(jobs, {ended(0.6, 0.9), ended(0.3, 0.6), without, {{}, "exit code 2"}});
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_TRUE(rows[0].ceiling);
   EXPECT_FALSE(rows[1].ceiling);
@@ -72,8 +72,8 @@ TEST(MatchedRows, AverageOverScenariosAndNameTheCeiling) {
 }
 
 TEST(MatchedRows, RefuseDriversWithDifferentHandOvers) {
-  const std::vector<MatchedJob> jobs = {{"1", "PDM-Lite", "pdm_lite", run("a", "pdm_lite")},
-                                        {"2", "mine", "diffusion", run("a", "diffusion")}};
+  const std::vector<MatchedJob> jobs = {{"PDM-Lite", "pdm_lite", run("a", "pdm_lite")},
+                                        {"mine", "diffusion", run("a", "diffusion")}};
   EXPECT_THROW(matchedRows(jobs, {ended(0.6, 0.9, 40), ended(0.6, 0.9, 42)}), core::InputError);
 }
 

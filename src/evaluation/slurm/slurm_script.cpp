@@ -34,7 +34,7 @@ std::string shellWord(const std::string& text) {
 }
 
 std::string slurmScript(const SlurmBatch& batch, const SlurmOptions& options) {
-  std::string text = "#!/bin/bash\n# Works on its part of a batch of cdiff evaluate.\n";
+  std::string text = "#!/bin/bash\n# Works on its part of a batch of cdiff.\n";
   for (const char* name : kVariables) {
     const char* value = std::getenv(name);
     if (value != nullptr) text += std::string("export ") + name + "=" + shellWord(value) + "\n";
