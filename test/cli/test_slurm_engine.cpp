@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <iterator>
+#include <set>
 
 #include "cli/evaluate_command.h"
 #include "cli/wall_clock.h"
@@ -36,21 +38,50 @@ int freePorts() {
   return port;
 }
 
+std::vector<pid_t> allProcesses() {
+  std::vector<pid_t> all;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") == std::string::npos) all.push_back(std::stoi(name));
+  }
+  return all;
+}
+
+/// A file of /proc/PID; empty where the process has ended.
+std::string stateOf(pid_t process, const std::string& name) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/" + name);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// 0 where it has ended.
+pid_t parentOf(pid_t process) {
+  const std::string text = stateOf(process, "stat");
+  if (text.rfind(')') == std::string::npos) return 0;
+  return std::stoi(core::splitText(text.substr(text.rfind(')') + 2), ' ').at(1));
+}
+
 /// A process and all that descend from it.
 std::vector<pid_t> treeOf(pid_t root) {
   std::vector<pid_t> tree = {root};
   for (std::size_t i = 0; i < tree.size(); ++i) {
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-      const std::string name = entry.path().filename().string();
-      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-      std::ifstream file(entry.path() / "stat");
-      std::string line;
-      if (!std::getline(file, line) || line.rfind(')') == std::string::npos) continue;
-      const auto words = core::splitText(line.substr(line.rfind(')') + 2), ' ');
-      if (std::stoi(words.at(1)) == tree[i]) tree.push_back(std::stoi(name));
-    }
+    for (const pid_t process : allProcesses())
+      if (parentOf(process) == tree[i]) tree.push_back(process);
   }
   return tree;
+}
+
+/// What Slurm runs on a node for workers on these results: its step daemons, which are no children
+/// of the node's daemon.
+std::set<pid_t> stepsOn(const std::string& node, const std::string& results) {
+  std::set<pid_t> steps;
+  for (const pid_t process : allProcesses()) {
+    const std::string words = stateOf(process, "cmdline");
+    if (words.find(std::string("worker\0", 7) + results) == std::string::npos) continue;
+    const std::string variable = "SLURMD_NODENAME=" + node + std::string(1, '\0');
+    if (stateOf(process, "environ").find(variable) == std::string::npos) continue;
+    if (stateOf(parentOf(process), "comm") == "slurmstepd\n") steps.insert(parentOf(process));
+  }
+  return steps;
 }
 
 class SlurmEngine : public test::EvaluateCommand {
@@ -116,6 +147,8 @@ class SlurmEngine : public test::EvaluateCommand {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
+  /// Whether Slurm has queued a task again.
+  bool queuedAgain() const { return shell("scontrol show job | grep -q 'Restarts=[1-9]'") == 0; }
   /// By default Slurm holds a task back for two minutes when it queues it again.
   int waitWithoutDelays(test::ProgramRun& driver) const {
     constexpr int kMostSeconds = 300;
@@ -146,10 +179,17 @@ TEST_F(SlurmEngine, LosesNothingWhenANodeIsKilled) {
   const std::string results = folder("results");
   test::ProgramRun driver(CDIFF_PROGRAM, onSlurm(file, results), folder("output"));
   waitForFirst(driver, results);
-  const int node = std::stoi(core::readFile(folder("cluster") + "/n1.pid", "node"));
-  for (const pid_t process : treeOf(node)) ::kill(process, SIGKILL);
+  std::set<pid_t> roots = stepsOn("n1", results);
+  while (roots.empty()) {
+    ASSERT_FALSE(driver.waitForEnd(0.02)) << "the node had no work\n" << output();
+    roots = stepsOn("n1", results);
+  }
+  roots.insert(std::stoi(core::readFile(folder("cluster") + "/n1.pid", "node")));
+  for (const pid_t root : roots)
+    for (const pid_t process : treeOf(root)) ::kill(process, SIGKILL);
   fs::remove(folder("cluster") + "/n1.pid");
   EXPECT_EQ(waitWithoutDelays(driver), 0) << output();
+  EXPECT_TRUE(queuedAgain());
   EXPECT_EQ(lines(fs::path(results) / "runs.csv"), 9U);
   expectSameAsLocal(file, results);
 }
@@ -161,6 +201,7 @@ TEST_F(SlurmEngine, LosesNothingWhenItsTasksArePreempted) {
   waitForFirst(driver, results);
   ASSERT_EQ(shell("sbatch -p high -N 2 --exclusive -o /dev/null --wrap true"), 0);
   EXPECT_EQ(waitWithoutDelays(driver), 0) << output();
+  EXPECT_TRUE(queuedAgain());
   expectSameAsLocal(file, results);
 }
 
