@@ -235,6 +235,15 @@ int conclude(const CollectArguments& arguments, const std::vector<CollectRequest
   return code;
 }
 
+/// A data set and a batch would mix the records of their runs.
+void requireDatasetFolder(const fs::path& folder) {
+  for (const char* name : {"matrix.yaml", "session.yaml", "search.yaml", "realism.json"}) {
+    if (!core::isFile(folder / name)) continue;
+    throw core::InputError("'" + folder.string() + "' holds results, see " + name +
+                           "; give another --results");
+  }
+}
+
 int collect(const CollectArguments& arguments) {
   if (!arguments.bags.bags.empty()) return convertBags(arguments);
   if (arguments.cancel) {
@@ -242,6 +251,7 @@ int collect(const CollectArguments& arguments) {
     return ExitCode::kPassed;
   }
   requireEngine(arguments.engine);
+  requireDatasetFolder(arguments.request.results);
   const std::vector<CollectRequest> sessions = planSessions(arguments);
   core::temporaryFolder();  // without one each session would fail
   const core::OutputFolder output(arguments.request.results, kLockedBy);

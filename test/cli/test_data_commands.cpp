@@ -142,6 +142,14 @@ TEST_F(DataCommands, SessionsTooShortForASampleAreNamedAndDrivenAgain) {
   EXPECT_TRUE(fs::exists(path("data/shards/arterial_exit_seed1.shard")));
 }
 
+TEST_F(DataCommands, CollectRefusesAFolderOfResults) {
+  fs::create_directories(path("data"));
+  std::ofstream(path("data/matrix.yaml")) << "scenarios: [arterial_exit]\n";
+  EXPECT_EQ(cdiff({"collect", "--scenarios", "arterial_exit", "--results", path("data")}), 3);
+  expectOutput("holds results, see matrix.yaml");
+  EXPECT_FALSE(fs::exists(path("data/runs")));
+}
+
 TEST_F(DataCommands, ScenesAreCollectedOnceAndTrainedOn) {
   const auto collect = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = {
