@@ -131,11 +131,14 @@ esac
 
     def test_exports_are_compared_with_their_sessions(self):
         # The stand-in for cdiff drives "a" 0.3 m away in x and 0.4 m in y, one tick late; the ego does not count, nor does who is in one alone.
+        # "a" is 5 m long and comes toward the ego of 4 m at x = 10: from tick 2 on, 4.3 m are less than half of both lengths. "d" touches it
+        # a tick after its recorded contact; "b" is not there. The second ego touches "e" earlier.
         program = """#!/bin/bash
 while [ $# -gt 0 ]; do case $1 in --output) export=$2 ;; --results) results=$2 ;; esac; shift; done
 [ -z "${export:-}" ] || { mkdir -p "$export"; touch "$export/x.xosc"; exit 0; }
 mkdir -p "$results"
-printf 'tick,id,x,y\\n0,ego,9,9\\n1,a,1.3,0.4\\n2,a,2,0\\n2,c,0,0\\n' >"$results/trace.csv"
+printf 'tick,id,x,y,heading\\n0,ego,9,9,0\\n1,a,5.3,0.4,0\\n2,a,5.7,0,0\\n2,c,0,0,0\\n1,d,10,3,0\\n2,d,10,1,0\\n' >"$results/trace.csv"
+echo '{"ego": {"contacts": [{"tick": 1, "with": "e"}]}}' >"$results/summary.json"
 exit 1
 """
         with tempfile.TemporaryDirectory() as folder:
@@ -149,11 +152,15 @@ exit 1
                                       capture_output=True, text=True, check=False)
 
             self.assertEqual(compared().returncode, 3)
-            (root / "run/trace.csv").write_text("tick,id,x,y\n0,ego,0,0\n0,a,0,0\n1,a,1,0\n2,a,2,0\n1,b,0,0\n")
+            rows = ["0,ego,10,0,0", "1,ego,10,0,0", "2,ego,10,0,0", "0,a,4,0,0", "1,a,5,0,0", "2,a,5.7,0,0", "1,b,0,0,0", "1,d,10,3,0", "2,d,10,1,0"]
+            (root / "run/trace.csv").write_text("\n".join(["tick,id,x,y,heading", *rows, ""]))
+            (root / "run/vehicles.csv").write_text("id,length,width,height\nego,4,2,1\na,5,2,1\nd,4,2,1\n")
+            contacts = [{"tick": 2, "with": "a"}, {"tick": 1, "with": "d"}, {"tick": 2, "with": "b"}, {"tick": 2, "with": "e"}]
+            (root / "run/summary.json").write_text(json.dumps({"ego": {"contacts": contacts}}))
             done = compared()
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn("| run | 2 | 0.500 | 0.05 |", done.stdout)
-            self.assertIn("Largest: 0.500 m and 0.05 s in 1 sessions", done.stdout)
+            self.assertIn("| run | 4 | 0.500 | 0.05 | 1 of 3 | 1 |", done.stdout)
+            self.assertIn("Largest: 0.500 m and 0.05 s in 1 sessions\nContacts again: 1 of 3; with vehicles that are gone: 1", done.stdout)
 
     def test_benchmark_builds_itself_only(self):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
@@ -254,6 +261,24 @@ exit 1
             self.assertEqual(completed("exp"), ["export"])
             self.assertEqual(completed("export", "--for"), ["--format"])
             self.assertEqual(completed("--ver"), ["--version"])
+
+    def test_the_manual_of_a_build_without_the_trainer_leaves_its_help_out(self):
+        program = """#!/bin/bash
+case $* in
+  --help) printf 'Subcommands:\\n  run    Run\\n  train  Train\\n' ;;
+  --version) echo cdiff 1.2.3 ;;
+  "run --help") echo Run ;;
+  *) exit 3 ;;
+esac
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            cdiff = Path(folder) / "cdiff"
+            cdiff.write_text(program)
+            cdiff.chmod(0o755)
+            subprocess.run([SOURCE / "scripts/write_reference", "--cdiff", cdiff, "--manual", Path(folder) / "manual"], check=True, timeout=60)
+            page = gzip.decompress((Path(folder) / "manual/cdiff.1.gz").read_bytes()).decode()
+            self.assertIn(".SH RUN\n", page)
+            self.assertNotIn(".SH TRAIN\n", page)
 
     def test_demo_builds_nothing_for_help_or_bad_arguments(self):
         for arguments in (["--help"], ["--bogus"], ["one", "two"]):
