@@ -22,13 +22,14 @@ BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 GOAL = 0.90
 FOLDER = BUILD / "coverage"
 JOBS = os.environ.get("JOBS", str(os.cpu_count()))
-FLAGS = "-O1 --coverage -fprofile-update=atomic"  # tests have threads
+# Tests have threads. As in sanitizers.py, gcc 12 takes what its own avx512fintrin.h leaves undefined for a fault of ours.
+FLAGS = "-O1 --coverage -fprofile-update=atomic -Wno-error=uninitialized -Wno-error=maybe-uninitialized"
 
 
 def build():
     subprocess.run(["cmake", "-S", SOURCE, "-B", FOLDER, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DE2E_CDIFF_BENCHMARKS=OFF",
                     f"-DCMAKE_CXX_FLAGS={FLAGS}", "-Wno-dev"], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["ninja", "-C", FOLDER, "-j", JOBS], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["ninja", "-C", FOLDER, "-j", JOBS], check=True)
 
 
 def run_tests():
