@@ -13,11 +13,12 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
-# dpkg-shlibdeps finds the packages of all libraries; these programs and ROS tools are started by name.
+# dpkg-shlibdeps finds the packages of all libraries; these programs and ROS tools are started by name. The setup files find packages of ROS by
+# ros-environment.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR}/devel/lib)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS sumo)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg, python3-roslaunch, python3-rosbag, rosout")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg, python3-roslaunch, python3-rosbag, ros-environment, rosout")
 # Both have a program /usr/bin/cdiff.
 set(CPACK_DEBIAN_PACKAGE_CONFLICTS colordiff)
 
