@@ -9,6 +9,7 @@
 #include "benchmark.h"
 #include "core/file.h"
 #include "core/program.h"
+#include "core/scratch_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -59,6 +60,8 @@ int run(const std::string& name, const std::string& json) {
     for (const auto& entry : known) names.push_back(entry.first);
     throw core::InputError("no benchmark '" + name + "'; known: " + core::joinText(names, ", "));
   }
+  const core::ScratchFolder cache;  // the user's own stays as it is
+  ::setenv("E2E_CDIFF_CACHE", cache.path().c_str(), 1);
   Figures figures;
   for (const auto& [known_name, benchmark] : known) {
     if (name.empty() || name == known_name) benchmark(figures);

@@ -14,7 +14,6 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kUnitsPerMeter = 1000.0;
 constexpr double kClosingRadius = 0.15;  // [m] half the widest slit that is closed
 constexpr double kLeastHoleArea = 1.0;   // [m^2]
 constexpr double kMitreLimit = 2.0;      // longest mitre in strip half-widths

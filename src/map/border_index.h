@@ -23,6 +23,9 @@ struct Strip {
   double width = 0.0;                 ///< [m]
 };
 
+/// Points of a union lie on a grid of this many units a meter.
+inline constexpr double kUnitsPerMeter = 1000.0;
+
 /// Rings of the union with the area on their left: outer rings counter-clockwise, holes clockwise.
 /// Slits narrower than 0.3 m (between abutting lanes, edges and junctions) are closed and holes
 /// below 1 m^2 filled, so that they make no border.

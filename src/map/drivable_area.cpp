@@ -8,7 +8,7 @@
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "map/border_index.h"
+#include "map/border_cache.h"
 
 namespace cdiff::map {
 namespace {
@@ -138,8 +138,8 @@ struct DrivableArea::Level {
         polygons(std::move(outlines.polygons)) {}
   /// From any thread.
   const Border& border() const {
-    std::call_once(
-        made, [this] { made_border = std::make_unique<Border>(uniteOutlines(strips, polygons)); });
+    std::call_once(made,
+                   [this] { made_border = std::make_unique<Border>(keptUnion(strips, polygons)); });
     return *made_border;
   }
 

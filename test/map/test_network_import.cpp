@@ -14,6 +14,7 @@
 #include "e2e_cdiff/map/road_network.h"
 #include "map/import/network_import.h"
 #include "support/error_text.h"
+#include "support/own_cache.h"
 #include "support/real_data.h"
 
 namespace cdiff::map {
@@ -26,26 +27,13 @@ using test::errorOf;
 /// A folder of its own for inputs and for the cache.
 class NetworkImport : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("e2e_cdiff_import_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    if (const char* cache = std::getenv("E2E_CDIFF_CACHE")) old_cache_ = cache;
-    ::setenv("E2E_CDIFF_CACHE", (folder_ / "cache").c_str(), 1);
-  }
-  void TearDown() override {
-    if (old_cache_.empty()) {
-      ::unsetenv("E2E_CDIFF_CACHE");
-    } else {
-      ::setenv("E2E_CDIFF_CACHE", old_cache_.c_str(), 1);
-    }
-    fs::remove_all(folder_);
-  }
   std::string write(const std::string& name, const std::string& content) const {
     core::writeFileAtomically(folder_ / name, content);
     return (folder_ / name).string();
   }
-  fs::path folder_;
-  std::string old_cache_;
+  const test::TemporaryFolder own_folder_;
+  const test::OwnCache cache_;
+  const fs::path folder_ = own_folder_.path();
 };
 
 TEST_F(NetworkImport, LeavesAKnownNetworkAsItIs) {
@@ -87,7 +75,7 @@ TEST_F(NetworkImport, DropsUnknownClassesAndNothingElse) {
 TEST_F(NetworkImport, WritesTheCacheOnce) {
   const std::string file = write("new.net.xml", "<net><lane allow=\"bus drone\"/></net>");
   const ImportedNetwork first = importNetwork(file);
-  EXPECT_EQ(first.file.parent_path(), folder_ / "cache" / "networks");
+  EXPECT_EQ(first.file.parent_path(), cache_.path() / "networks");
   EXPECT_EQ(core::readFile(first.file, "cached network"), first.text);
   const auto written = fs::last_write_time(first.file);
   fs::permissions(first.file.parent_path(), fs::perms::owner_read | fs::perms::owner_exec);
@@ -267,7 +255,7 @@ TEST_F(NetworkImport, QuotesNetconvert) {
       errorOf([&] { importNetwork(write("bad.xodr", "<OpenDRIVE><road")); });
   EXPECT_NE(message.find("netconvert could not convert"), std::string::npos) << message;
   EXPECT_NE(message.find("Error"), std::string::npos) << message;  // netconvert's own word
-  EXPECT_TRUE(fs::is_empty(folder_ / "cache" / "networks"));
+  EXPECT_TRUE(fs::is_empty(cache_.path() / "networks"));
 }
 
 TEST_F(NetworkImport, FindsShippedNetworks) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <optional>
 #include <pugixml.hpp>
 
+#include "core/checked_cache.h"
 #include "core/file.h"
 #include "core/guarded_process.h"
 #include "core/program.h"
@@ -98,54 +98,11 @@ std::vector<std::string> shippedNames(const fs::path& folder) {
 }
 
 fs::path cachedFile(const std::string& content) {
-  const fs::path folder = core::cacheFolder() / "networks";
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw core::InputError("cannot make the cache folder '" + folder.string() +
-                           "': " + error.message());
-  }
-  const std::string key = core::sha256(content + "\n" + kImporterVersion);
-  return folder / (key + ".net.xml");
-}
-
-/// Content of a file of the cache; nothing where there is none, or none that can be read.
-std::optional<std::string> contentInCache(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return std::nullopt;
-  try {
-    return core::readFile(file, "cached network");
-  } catch (const core::InputError&) {
-    return std::nullopt;
-  }
-}
-
-/// Replaces whatever has the name but a folder that holds something.
-void store(const fs::path& file, const std::string& text) {
-  std::error_code error;
-  if (fs::symlink_status(file, error).type() != fs::file_type::regular) fs::remove(file, error);
-  core::writeFileAtomically(file, text);
-}
-
-/// Beside a converted network: its SHA-256.
-fs::path checksumFile(const fs::path& file) { return file.string() + ".sha256"; }
-
-/// The converted network as it was stored; nothing where the cache lacks it or it is another now.
-std::optional<std::string> convertedInCache(const fs::path& file) {
-  std::optional<std::string> text = contentInCache(file);
-  const std::optional<std::string> checksum = contentInCache(checksumFile(file));
-  if (text && checksum && *checksum == core::sha256(*text) + "\n") return text;
-  return std::nullopt;
-}
-
-/// Several processes may do so at once: all write the same, and either file is whole at any time.
-void storeConverted(const fs::path& file, const std::string& text) {
-  store(file, text);
-  store(checksumFile(file), core::sha256(text) + "\n");
+  return core::cacheFile("networks", content + "\n" + kImporterVersion, ".net.xml");
 }
 
 void storeUnlessThere(const fs::path& file, const std::string& text) {
-  if (contentInCache(file) != text) store(file, text);
+  if (core::cachedContent(file) != text) core::storeInCache(file, text);
 }
 
 bool isOpenDrive(const std::string& source, const std::string& content) {
@@ -198,12 +155,12 @@ void importConverted(const Format& format, const std::string& content, ImportedN
                            "delete it");
   }
   network.file = cachedFile(content);
-  if (auto text = convertedInCache(network.file)) {
+  if (auto text = core::checkedContent(network.file)) {
     network.text = std::move(*text);
   } else {
     requireFewLevels(content, network.source.string());
     network.text = format.convert(network.source);
-    storeConverted(network.file, network.text);
+    core::storeChecked(network.file, network.text);
   }
   network.changes.push_back(std::string("converted from ") + format.name + " with netconvert");
 }
