@@ -285,7 +285,7 @@ Markup approachSection(const record::SessionResult& result) {
     return pageNote("No CBV was driven near the ego.") +
            cameraStrip(result.approaches.latestViews(traffic::kEgoSlot), "ego");
   }
-  rendering::FrontCamera camera = record::cameraForPeople(result.setup, 640, 384);
+  rendering::FrontCamera camera = result.front_views.camera(640, 384);
   Markup html;
   const std::size_t count = result.approaches.approaches().size();
   if (count > shown.size()) {

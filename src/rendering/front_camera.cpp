@@ -39,6 +39,9 @@ Intrinsics intrinsicsOf(const CameraOptions& options) { return intrinsicsOf(fron
 FrontCamera::FrontCamera(const CameraOptions& options, const map::RoadNetwork& network)
     : options_(validated(options)), renderer_(frontRig(options), network) {}
 
+FrontCamera::FrontCamera(const CameraOptions& options, const FrontCamera& other)
+    : options_(validated(options)), renderer_(frontRig(options), other.renderer_) {}
+
 traffic::CameraImage FrontCamera::render(const traffic::TrafficSnapshot& snapshot,
                                          const traffic::Vehicle& vehicle) {
   return std::move(renderer_.render(snapshot, vehicle).front().image);

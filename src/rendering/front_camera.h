@@ -15,6 +15,8 @@ class FrontCamera {
  public:
   /// Throws InputError as CameraOptions::validate does.
   FrontCamera(const CameraOptions& options, const map::RoadNetwork& network);
+  /// Of the same network, whose shapes both share: one thread may use both.
+  FrontCamera(const CameraOptions& options, const FrontCamera& other);
 
   /// What `vehicle`, one of the snapshot's or a copy of one, sees. It does not see itself; others
   /// are distinguished from it by id.

@@ -223,6 +223,14 @@ void addBorder(const map::RoadNetwork& network, const map::Lane& lane, double si
   }
 }
 
+/// Whether a lane rises nowhere as far above the ground as a side needs.
+bool liesOnGround(const map::Lane& lane, double ground) {
+  const auto& points = lane.centerline.points();
+  return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
+    return point.z() - ground < kLeastHeight;
+  });
+}
+
 double lowestRoad(const map::RoadNetwork& network) {
   double low = std::numeric_limits<double>::infinity();
   for (const map::Lane& lane : network.lanes()) {
@@ -238,6 +246,7 @@ std::vector<Surface> roadSides(const map::RoadNetwork& network) {
   const double ground = lowestRoad(network);
   for (const map::Lane& lane : network.lanes()) {
     if (lane.internal || !lane.allows_cars || lane.centerline.length() < kLeastHeight) continue;
+    if (liesOnGround(lane, ground)) continue;
     if (lane.right == map::kNoLane) addBorder(network, lane, -1.0, ground, surfaces);
     if (lane.left == map::kNoLane) addBorder(network, lane, 1.0, ground, surfaces);
   }

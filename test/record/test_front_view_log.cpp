@@ -55,6 +55,21 @@ TEST(FrontViewLog, TakesAViewAtAContactOfACbv) {
   EXPECT_EQ(log.views()[1].tick, 57u);
 }
 
+TEST(FrontViewLog, ACameraThatSharesItsShapesShowsTheSame) {
+  const test::SampleSetup sample = setupWith(2.5);
+  const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(64);
+  const traffic::Vehicle& cbv = snapshot.vehicles[1];
+  const auto expected = cameraForPeople(sample.setup, 64, 40).render(snapshot, cbv).rgb;
+  FrontViewLog log(sample.setup);
+  EXPECT_EQ(log.camera(64, 40).render(snapshot, cbv).rgb, expected) << "without a view";
+  log.observe(test::sampleSnapshot(56));
+  EXPECT_EQ(log.camera(64, 40).render(snapshot, cbv).rgb, expected);
+  log.observe(snapshot);
+  ASSERT_EQ(log.views().size(), 2u);
+  const FrontViewLog other = logOf(sample.setup, 64);
+  EXPECT_EQ(log.views()[1].jpeg, other.views()[1].jpeg) << "between, another camera was used";
+}
+
 TEST(FrontViewLog, RateZeroKeepsItEmpty) {
   const test::SampleSetup sample = setupWith(0.0);
   EXPECT_TRUE(logOf(sample.setup, 80).views().empty());

@@ -26,10 +26,14 @@ std::vector<std::uint8_t> encoded(const traffic::CameraImage& image, const char*
                            std::to_string(image.rgb.size()) + " bytes");
   }
   cv::Mat blue_first(image.height, image.width, CV_8UC3);
-  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
-    blue_first.data[i] = image.rgb[i + 2];
-    blue_first.data[i + 1] = image.rgb[i + 1];
-    blue_first.data[i + 2] = image.rgb[i];
+  const std::uint8_t* from = image.rgb.data();
+  const std::uint8_t* const end = from + image.rgb.size();
+  for (std::uint8_t* to = blue_first.data; from != end; from += 3, to += 3) {
+    const std::uint8_t red = from[0];
+    const std::uint8_t green = from[1];
+    to[0] = from[2];
+    to[1] = green;
+    to[2] = red;
   }
   std::vector<std::uint8_t> bytes;
   cv::imencode(format, blue_first, bytes, settings);
@@ -83,17 +87,25 @@ bool touches(const traffic::TrafficSnapshot& snapshot, const std::string& id) {
       [&](const traffic::Contact& contact) { return contact.first == id || contact.second == id; });
 }
 
-}  // namespace
-
-rendering::FrontCamera cameraForPeople(const session::SessionSetup& setup, std::int64_t width,
-                                       std::int64_t height) {
+rendering::CameraOptions optionsForPeople(const session::SessionSetup& setup, std::int64_t width,
+                                          std::int64_t height) {
   rendering::CameraOptions options = setup.options().camera;
   options.width = width;
   options.height = height;
   options.blind = false;
-  rendering::FrontCamera front(options, setup.network());
-  front.setBodyColors(rendering::BodyColors::kByRole);
-  return front;
+  return options;
+}
+
+rendering::FrontCamera paintedByRole(rendering::FrontCamera camera) {
+  camera.setBodyColors(rendering::BodyColors::kByRole);
+  return camera;
+}
+
+}  // namespace
+
+rendering::FrontCamera cameraForPeople(const session::SessionSetup& setup, std::int64_t width,
+                                       std::int64_t height) {
+  return paintedByRole({optionsForPeople(setup, width, height), setup.network()});
 }
 
 rendering::RigRenderer rigForPeople(const session::SessionSetup& setup, std::int64_t width,
@@ -131,6 +143,11 @@ void FrontViewLog::add(const traffic::TrafficSnapshot& snapshot, const traffic::
                     jpegOf(camera_->render(snapshot, vehicle)), contact});
   bytes_ += views_.back().jpeg.size();
   contact_views_ += contact ? 1U : 0U;
+}
+
+rendering::FrontCamera FrontViewLog::camera(std::int64_t width, std::int64_t height) const {
+  if (!camera_) return cameraForPeople(setup_, width, height);
+  return paintedByRole({optionsForPeople(setup_, width, height), *camera_});
 }
 
 double FrontViewLog::period() const {

@@ -67,6 +67,8 @@ class FrontViewLog {
 
   /// By time, then slot.
   const std::vector<FrontView>& views() const { return views_; }
+  /// As cameraForPeople; it shares the shapes of the log's own camera: one thread may use both.
+  rendering::FrontCamera camera(std::int64_t width, std::int64_t height) const;
   /// Between views: as asked for, or a power of two of it where they would not fit [s].
   double period() const;
 
