@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <fstream>
+
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/bag_queue.h"
@@ -79,6 +82,31 @@ TEST(BagQueue, AFullDiskIsNamedToWhoHandsTicksOver) {
             std::string::npos)
       << text;
   EXPECT_FALSE(fs::exists(folder.path() / "a.bag.active"));
+}
+
+/// What the first record of a bag says of its chunks.
+std::uint32_t chunksOf(const fs::path& file) {
+  constexpr std::size_t kRecord = 4096;  // [bytes]
+  std::string begin(kRecord, '\0');
+  std::ifstream(file).read(begin.data(), kRecord);
+  const std::string field = "chunk_count=";
+  std::uint32_t count = 0;
+  std::memcpy(&count, begin.data() + begin.find(field) + field.size(), sizeof(count));
+  return count;
+}
+
+// Chunks have 768 KiB at first, and 3 MiB where the bag has more than 64 MiB; a tick adds to each.
+TEST(BagFile, ALongBagHasFewerChunks) {
+  constexpr std::uint64_t kMegabyte = std::uint64_t{1} << 20;
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "a.bag";
+  BagFile bag(file, test::sampleOptions(), bagTopic, BagFile::Content::kSessionOnly);
+  const TickMessages tick = tickOf(0, 500, 0);
+  const auto size = [&] { return fs::file_size(file.string() + ".active"); };
+  while (size() < 112 * kMegabyte) bag.write(tick);
+  bag.finish();
+  EXPECT_GT(chunksOf(file), 60U);
+  EXPECT_LE(chunksOf(file), 64 * 4 / 3 + 48 / 3 + 4U);
 }
 
 }  // namespace
