@@ -83,6 +83,8 @@ constexpr MeasureDefinition kAccelerationP = {
 /// Shapiro-Wilk of the speeds and the signed longitudinal accelerations of CBVs at decisions.
 class CbvNormality final : public Metric {
  public:
+  explicit CbvNormality(std::pmr::memory_resource* memory)
+      : speeds_(memory), accelerations_(memory) {}
   void observe(const MetricTick& tick) override {
     if (!tick.snapshot.decision_tick) return;
     for (const CbvSighting& cbv : tick.cbvs) {
@@ -102,17 +104,18 @@ class CbvNormality final : public Metric {
   }
 
  private:
-  std::vector<double> speeds_;         ///< [m/s]
-  std::vector<double> accelerations_;  ///< [m/s^2]
+  std::pmr::vector<double> speeds_;         ///< [m/s]
+  std::pmr::vector<double> accelerations_;  ///< [m/s^2]
 };
 
 }  // namespace
 
 MetricDescriptor cbvNormalityMetric() {
-  return {"cbv_normality",
-          "Whether speeds and accelerations of CBVs are normally distributed.",
-          {known::kSpeedShapiroWilk, kSpeedP, known::kAccelerationShapiroWilk, kAccelerationP},
-          [](const MetricContext&) { return std::make_unique<CbvNormality>(); }};
+  return {
+      "cbv_normality",
+      "Whether speeds and accelerations of CBVs are normally distributed.",
+      {known::kSpeedShapiroWilk, kSpeedP, known::kAccelerationShapiroWilk, kAccelerationP},
+      [](const MetricContext& context) { return std::make_unique<CbvNormality>(context.memory); }};
 }
 
 const MeasureDefinition known::kSpeedWasserstein = {
@@ -142,8 +145,10 @@ constexpr double kBackgroundRadius = 150.0;  // [m] around the ego, for the samp
 class SpeedWasserstein final : public Metric {
  public:
   /// Throws InputError for samples that are not numbers.
-  explicit SpeedWasserstein(const MetricsOptions& options) : options_(options) {
-    if (options.speed_target == "file") target_ = options.samples();
+  SpeedWasserstein(const MetricsOptions& options, std::pmr::memory_resource* memory)
+      : options_(options), target_(memory), speeds_(memory) {
+    if (options.speed_target != "file") return;
+    for (const double sample : options.samples()) target_.add(sample);
   }
 
   void observe(const MetricTick& tick) override {
@@ -152,7 +157,7 @@ class SpeedWasserstein final : public Metric {
       sampleBackground(*tick.ego, tick.snapshot);
     for (const CbvSighting& cbv : tick.cbvs) {
       if (cbv.placed() && std::isfinite(cbv.vehicle->state.speed))
-        speeds_.push_back(cbv.vehicle->state.speed);
+        speeds_.add(cbv.vehicle->state.speed);
     }
   }
 
@@ -179,7 +184,7 @@ class SpeedWasserstein final : public Metric {
       if (vehicle.role != traffic::VehicleRole::kBackground) continue;
       if (!std::isfinite(vehicle.state.speed)) continue;
       const double distance = (vehicle.state.position - ego.state.position).norm();
-      if (distance <= kBackgroundRadius) target_.push_back(vehicle.state.speed);
+      if (distance <= kBackgroundRadius) target_.add(vehicle.state.speed);
     }
   }
 
@@ -195,8 +200,8 @@ class SpeedWasserstein final : public Metric {
   }
 
   MetricsOptions options_;
-  std::vector<double> target_;  ///< samples [m/s]
-  std::vector<double> speeds_;  ///< of CBVs [m/s]
+  SortedSamples target_;  ///< [m/s]
+  SortedSamples speeds_;  ///< of CBVs [m/s]
 };
 
 }  // namespace
@@ -206,7 +211,7 @@ MetricDescriptor speedWassersteinMetric() {
           "Distance of the speeds of CBVs to a target distribution.",
           {known::kSpeedWasserstein},
           [](const MetricContext& context) {
-            return std::make_unique<SpeedWasserstein>(context.options.metrics);
+            return std::make_unique<SpeedWasserstein>(context.options.metrics, context.memory);
           }};
 }
 

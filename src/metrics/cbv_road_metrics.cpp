@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -8,6 +7,7 @@
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/formulas/quantiles.h"
 #include "metrics/formulas/sample_statistics.h"
+#include "metrics/formulas/sorted_samples.h"
 #include "metrics/known_measures.h"
 
 namespace cdiff::metrics {
@@ -96,18 +96,18 @@ constexpr MeasureDefinition kEdgeDistanceQuantile = {
 
 class CbvEdgeDistance final : public Metric {
  public:
+  explicit CbvEdgeDistance(std::pmr::memory_resource* memory) : distances_(memory) {}
   void observe(const MetricTick& tick) override {
     if (!tick.snapshot.decision_tick) return;
     for (const CbvSighting& cbv : tick.cbvs) {
       if (!cbv.edge_distance) continue;
       mean_.add(*cbv.edge_distance);
-      distances_.push_back(*cbv.edge_distance);
+      distances_.add(*cbv.edge_distance);
     }
   }
   void report(MetricSink& sink) const override {
     sink.set(kEdgeDistanceMean, measureOrReason(mean_.mean(), mean_.count(), kNoCbv));
-    std::vector<double> sorted = distances_;
-    std::sort(sorted.begin(), sorted.end());
+    const std::pmr::vector<double>& sorted = distances_.sorted();
     if (sorted.empty()) return sink.set(kEdgeDistanceQuantile, absentMeasure(kNoCbv));
     const double quantile = quantileOf(sorted, 0.05, QuantileRule::kLinear);
     sink.set(kEdgeDistanceQuantile, {quantile, sorted.size(), {}, {}});
@@ -115,7 +115,7 @@ class CbvEdgeDistance final : public Metric {
 
  private:
   SampleStatistics mean_;
-  std::vector<double> distances_;  ///< [m]
+  SortedSamples distances_;  ///< [m]
 };
 
 }  // namespace
@@ -124,7 +124,9 @@ MetricDescriptor cbvEdgeDistanceMetric() {
   return {"cbv_edge_distance",
           "How far the boxes of CBVs stay from the edge of the road.",
           {kEdgeDistanceMean, kEdgeDistanceQuantile},
-          [](const MetricContext&) { return std::make_unique<CbvEdgeDistance>(); }};
+          [](const MetricContext& context) {
+            return std::make_unique<CbvEdgeDistance>(context.memory);
+          }};
 }
 
 const MeasureDefinition known::kCbvWrongWay = {

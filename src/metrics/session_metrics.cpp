@@ -101,8 +101,8 @@ void leaveOutMetric(const std::string& name, const std::string& reason) {
 class SessionMetrics::Metrics {
  public:
   Metrics(const SessionMetricsOptions& options, const map::DrivableArea& drivable_area,
-          const map::Route& ego_route)
-      : options_(options), context_{drivable_area, ego_route, options_}, ticks_(context_) {
+          const map::Route& ego_route, std::pmr::memory_resource* memory)
+      : options_(options), context_{drivable_area, ego_route, options_, memory}, ticks_(context_) {
     for (const MetricDescriptor& descriptor : metricDescriptors()) {
       const auto reason = reasonsToLeaveOut().find(descriptor.name);
       if (reason != reasonsToLeaveOut().end()) {
@@ -177,8 +177,9 @@ class SessionMetrics::Metrics {
 };
 
 SessionMetrics::SessionMetrics(const SessionMetricsOptions& options,
-                               const map::DrivableArea& drivable_area, const map::Route& ego_route)
-    : metrics_(std::make_unique<Metrics>(options, drivable_area, ego_route)) {}
+                               const map::DrivableArea& drivable_area, const map::Route& ego_route,
+                               std::pmr::memory_resource* memory)
+    : metrics_(std::make_unique<Metrics>(options, drivable_area, ego_route, memory)) {}
 
 SessionMetrics::~SessionMetrics() = default;
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <memory_resource>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,9 +59,10 @@ void leaveOutMetric(const std::string& name, const std::string& reason);
 /// the same online, from a bag, and in one process.
 class SessionMetrics {
  public:
-  /// References must outlive the object.
+  /// References must outlive the object, and `memory`, in which lies what grows with the session.
   SessionMetrics(const SessionMetricsOptions& options, const map::DrivableArea& drivable_area,
-                 const map::Route& ego_route);
+                 const map::Route& ego_route,
+                 std::pmr::memory_resource* memory = std::pmr::get_default_resource());
   ~SessionMetrics();
 
   /// One tick in order; `selection` at decision ticks, else nullptr. A metric that throws is left

@@ -99,8 +99,8 @@ Markup dots(const std::vector<record::Waypoint>& states, const std::string& styl
 /// What the planner weighed, from the vehicle on: the best few on top of the others.
 Markup candidatesSvg(const record::LoggedPlan& plan, const MapCanvas& canvas) {
   constexpr std::size_t kBest = 3;
-  std::vector<const planning::PlannedCandidate*> order;
-  for (const planning::PlannedCandidate& candidate : plan.candidates) order.push_back(&candidate);
+  std::vector<const record::LoggedCandidate*> order;
+  for (const record::LoggedCandidate& candidate : plan.candidates) order.push_back(&candidate);
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* left, const auto* right) { return left->score < right->score; });
   Markup svg;
@@ -268,19 +268,8 @@ Markup approachPart(const record::SessionResult& result, const record::Approach&
 
 }  // namespace
 
-std::vector<const record::Approach*> shownApproaches(const record::ApproachLog& log) {
-  std::vector<const record::Approach*> shown;
-  for (const record::Approach& approach : log.approaches()) shown.push_back(&approach);
-  std::stable_sort(shown.begin(), shown.end(),
-                   [](const record::Approach* left, const record::Approach* right) {
-                     return left->gap < right->gap;
-                   });
-  if (shown.size() > kMostApproaches) shown.resize(kMostApproaches);
-  return shown;
-}
-
 Markup approachSection(const record::SessionResult& result) {
-  const std::vector<const record::Approach*> shown = shownApproaches(result.approaches);
+  const std::vector<const record::Approach*> shown = result.approaches.nearest();
   if (shown.empty()) {
     return pageNote("No CBV was driven near the ego.") +
            cameraStrip(result.approaches.latestViews(traffic::kEgoSlot), "ego");

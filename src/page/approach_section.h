@@ -19,12 +19,6 @@ core::Markup planPictures(const record::SessionResult& result, const record::Veh
 // The CBVs that came nearest to the ego: what CBV and ego saw at the closest approach, and a plan
 // from 3 s before against what was driven.
 
-/// At most this many CBVs are shown with pictures.
-inline constexpr std::size_t kMostApproaches = 4;
-
-/// The approaches that are shown, smallest gap first (ties: the vehicle that was driven first).
-std::vector<const record::Approach*> shownApproaches(const record::ApproachLog& log);
-
 /// Renders the front views again, at 640 x 384 pixels.
 core::Markup approachSection(const record::SessionResult& result);
 

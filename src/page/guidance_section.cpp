@@ -38,7 +38,7 @@ ChartSeries lineOf(const record::GuidanceSeries& series, const std::string& id,
     if (sample.vehicle_id != id) continue;
     const bool pause = index > 0 && sample.time - last_time > 1.5 * period;
     if (pause) line.points.emplace_back(last_time, std::numeric_limits<double>::quiet_NaN());
-    if (pause || index % stride == 0) line.points.emplace_back(sample.time, sample.report.value);
+    if (pause || index % stride == 0) line.points.emplace_back(sample.time, sample.value);
     last_time = sample.time;
     ++index;
   }

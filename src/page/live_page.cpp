@@ -239,7 +239,7 @@ namespace {
 long tenths(double value) { return roundedNumber(10.0 * value); }
 
 /// Styles of the vehicles by their index, as CBVs.
-std::vector<std::size_t> stylesOf(const std::vector<record::TimelineVehicle>& vehicles,
+std::vector<std::size_t> stylesOf(const std::pmr::vector<record::TimelineVehicle>& vehicles,
                                   const std::vector<std::string>& cbvs) {
   std::vector<std::size_t> styles;
   for (const record::TimelineVehicle& vehicle : vehicles) {

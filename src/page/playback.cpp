@@ -101,7 +101,7 @@ Moments momentsOf(const record::SessionResult& result) {
     if (own || contacts.size() <= kMostContacts)
       moments.emplace(contact.time, contact.first + " and " + contact.second + " touch");
   }
-  for (const record::Approach* approach : shownApproaches(result.approaches)) {
+  for (const record::Approach* approach : result.approaches.nearest()) {
     if (approach->gap > 0.0)
       moments.emplace(approach->time(), approach->vehicle_id + " is nearest, " +
                                             core::formatFixed(approach->gap, 2) +

@@ -25,7 +25,7 @@ std::string fixedOrDash(const std::optional<double>& value, int decimals) {
 }
 
 /// At most three ids, highest count first.
-std::vector<std::string> mostOften(const std::map<std::string, std::size_t>& counts) {
+std::vector<std::string> mostOften(const std::pmr::map<std::string, std::size_t>& counts) {
   std::vector<std::pair<std::string, std::size_t>> rows(counts.begin(), counts.end());
   std::stable_sort(rows.begin(), rows.end(),
                    [](const auto& left, const auto& right) { return left.second > right.second; });

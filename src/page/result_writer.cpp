@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/disk_memory.h"
 #include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/stage_times.h"
@@ -27,6 +28,8 @@ namespace fs = std::filesystem;
 /// usual.
 constexpr std::size_t kSummaryRoom = 1 << 16;
 constexpr std::size_t kJunitRoom = 1 << 14;
+/// From one time that the memory is settled to the next.
+constexpr std::uint64_t kTicksToSettle = 1000;
 
 /// A fault may hold what others say: safe to show, and not too long.
 traffic::Fault shown(const traffic::Fault& fault) {
@@ -46,11 +49,18 @@ class ResultWriter::Record {
         summary_(folder_, "summary.json", kSummaryRoom),
         junit_(folder_, "junit.xml", kJunitRoom),
         trace_(std::make_unique<record::TraceWriter>(folder_)),
-        metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
-        timeline_(setup.options().simulation_step),
-        plans_(setup.options().simulation_step),
+        memory_(folder_.path()),
+        metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute(), &memory_),
+        timeline_(setup.options().simulation_step, &memory_),
+        cbv_(&memory_),
+        approaches_(&memory_),
+        plans_(setup.options().simulation_step, &memory_),
+        guidance_(&memory_),
         front_views_(setup),
         hold_ups_(setup),
+        sizes_(&memory_),
+        latencies_(&memory_),
+        late_(&memory_),
         result_{setup,        timeline_, cbv_,      approaches_, plans_, guidance_,
                 front_views_, driving_,  hold_ups_, steering_,   facts} {
     folder_.remove({"session.yaml", "trace.csv", "plans.csv", "vehicles.csv", "summary.json",
@@ -83,6 +93,7 @@ class ResultWriter::Record {
     hold_ups_.observe(snapshot);
     steering_.observe(record);
     sizes_.observe(snapshot);
+    if (snapshot.tick % kTicksToSettle == 0) memory_.settle();
     writeTrace(snapshot);
   }
 
@@ -95,7 +106,7 @@ class ResultWriter::Record {
     });
     attempt([&] { saveFromDeletion(); });
     for (const record::Approach& approach : approaches_.approaches())
-      timeline_.addEvent(approach.snapshot);
+      timeline_.addEvent(approach.event());
     completeResult();
     attempt([&] { folder_.write("plans.csv", record::plansCsv(plans_)); });
     attempt([&] { folder_.write("vehicles.csv", sizes_.csv()); });
@@ -124,7 +135,12 @@ class ResultWriter::Record {
   }
 
   const metrics::TickMeasures& tickMeasures() const { return tick_measures_; }
-  metrics::SessionMeasures measures() const { return metrics_.measures(); }
+  /// Reads all samples of the session so far.
+  metrics::SessionMeasures measures() {
+    metrics::SessionMeasures measures = metrics_.measures();
+    memory_.settle();
+    return measures;
+  }
 
   fs::path folder() const { return folder_.path(); }
   const record::SessionResult& result() const { return result_; }
@@ -189,6 +205,7 @@ class ResultWriter::Record {
   core::PendingFile summary_;
   core::PendingFile junit_;
   std::unique_ptr<record::TraceWriter> trace_;  ///< null once it could not be written
+  core::DiskMemory memory_;                     ///< of all that grows with the session
   metrics::SessionMetrics metrics_;
   metrics::TickMeasures tick_measures_;
   record::Timeline timeline_;

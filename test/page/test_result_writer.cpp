@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <yaml-cpp/yaml.h>
 
 #include <nlohmann/json.hpp>
@@ -60,6 +61,57 @@ void expectMethod(const session::ScenarioOptions& options, const std::string& na
   EXPECT_NE(page.find(" · method " + text), std::string::npos);
   EXPECT_NE(writer.table().find("\n  method                  " + text + "\n"), std::string::npos)
       << writer.table();
+}
+
+/// A session whose vehicles stand: a CBV is planned for at each decision, and every second another
+/// vehicle drives in the background.
+class StandingSession {
+ public:
+  explicit StandingSession(const session::SessionSetup& setup)
+      : selection_(test::sampleSelection(100, setup.network())), actions_(1) {
+    actions_[0].slot = 0;
+    actions_[0].vehicle_id = "bg_1";
+    actions_[0].rollout.resize(80);
+    actions_[0].candidates = {{std::vector<Eigen::Vector2d>(8), 1.0, true}};
+    actions_[0].guidance.objectives = {{"collision_avoidance", 1.0, 2.0, 3.0, 0.0, 0}};
+  }
+  void show(session::SessionObserver& observer, std::uint64_t ticks) {
+    for (const std::uint64_t end = tick_ + ticks; tick_ < end; ++tick_) {
+      traffic::TrafficSnapshot snapshot = test::sampleSnapshot(100);
+      snapshot.tick = tick_;
+      snapshot.time = 0.05 * static_cast<double>(tick_);
+      snapshot.decision_tick = tick_ % 2 == 0;
+      snapshot.vehicles[2].id = "bg_" + std::to_string(2 + tick_ / 20);
+      session::TickRecord record;
+      record.snapshot = &snapshot;
+      if (snapshot.decision_tick) {
+        record.selection = &selection_;
+        record.actions = &actions_;
+        record.latencies = {{"cbv:diffusion", 1.0}};
+      }
+      observer.observe(record);
+    }
+  }
+
+ private:
+  cbv::CbvSelection selection_;
+  std::vector<planning::PlannedAction> actions_;
+  std::uint64_t tick_ = 0;
+};
+
+// Each decision adds a plan of some 3 kB, and each frame three poses.
+TEST(ResultWriter, ALongSessionGrowsOnTheDiskAlone) {
+  constexpr std::uint64_t kTicks = 10000;
+  session::ScenarioOptions options = test::sampleOptions();
+  options.report.front_view_rate = 0.0;  // of a fixed size
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  StandingSession session(sample.setup);
+  session.show(writer, kTicks);
+  const std::size_t before = ::mallinfo2().uordblks;
+  session.show(writer, kTicks);
+  EXPECT_LT(::mallinfo2().uordblks, before + 10 * kTicks);  // [bytes]
 }
 
 TEST(ResultWriter, SummaryReportAndTableNameTheMethod) {

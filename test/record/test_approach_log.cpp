@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "page/approach_section.h"
+#include "record/logs/cbv_log.h"
 #include "record/sample_session.h"
 
 namespace cdiff::record {
@@ -98,8 +98,30 @@ TEST(ApproachLog, TheFourNearestAreShown) {
   }
   show(log, snapshot);
   std::string ids;
-  for (const Approach* approach : page::shownApproaches(log)) ids += approach->vehicle_id;
+  for (const Approach* approach : log.nearest()) ids += approach->vehicle_id;
   EXPECT_EQ(ids, "bdec");  // ties in order
+}
+
+TEST(ApproachLog, OfTheOthersAFrameAloneIsKept) {
+  ApproachLog log;
+  for (int i = 0; i < 5; ++i) {  // the first one is the farthest
+    traffic::TrafficSnapshot snapshot = lineUp(static_cast<std::uint64_t>(i), 30.0 - i);
+    snapshot.vehicles[1].id = std::string(1, static_cast<char>('a' + i));
+    decide(log, snapshot, 10);
+  }
+  const Approach& far = log.approaches()[0];
+  EXPECT_FALSE(far.isWhole());
+  EXPECT_TRUE(far.cbv_image.empty());
+  EXPECT_DOUBLE_EQ(far.time(), 0.0);
+  ASSERT_EQ(far.event().frame.poses.size(), 2u);
+  EXPECT_DOUBLE_EQ(far.event().frame.poses[1].x, 30.0);
+  EXPECT_EQ(far.event().vehicles[1].id, "a");
+  traffic::TrafficSnapshot again = lineUp(9, 12.0);  // it comes nearest
+  decide(log, again, 20);
+  EXPECT_EQ(log.nearest().front()->vehicle_id, "a");
+  EXPECT_EQ(log.nearest().front()->cbv_image.rgb[0], 20);
+  EXPECT_FALSE(log.find("b")->isWhole());
+  EXPECT_DOUBLE_EQ(log.find("b")->event().frame.poses[1].x, 29.0);
 }
 
 }  // namespace

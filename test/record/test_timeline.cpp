@@ -32,8 +32,8 @@ TEST(Timeline, KeepsAFrameOfEachContactAndEvent) {
     if (tick == 5) snapshot.contacts = {{"ego", "bg_1"}};
     timeline.observe(snapshot);
   }
-  timeline.addEvent(test::sampleSnapshot(2));
-  timeline.addEvent(test::sampleSnapshot(4));  // has a frame already
+  timeline.addEvent(loneFrame(test::sampleSnapshot(2)));
+  timeline.addEvent(loneFrame(test::sampleSnapshot(4)));  // has a frame already
   ASSERT_EQ(timeline.frames().size(), 5u);
   const std::uint64_t ticks[] = {0, 2, 4, 5, 8};
   const bool events[] = {false, true, true, true, false};

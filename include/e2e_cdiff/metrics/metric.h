@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <memory_resource>
 #include <optional>
 #include <string>
 #include <utility>
@@ -161,6 +162,8 @@ struct MetricContext {
   const map::DrivableArea& drivable_area;  ///< of the session's network
   const map::Route& ego_route;             ///< the ego's route
   const SessionMetricsOptions& options;    ///< what metrics know about the scenario
+  /// For what grows with the session: gives nothing back before the session ends.
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
 };
 
 /// Keys and values of one entry of a list in summary.json, in order.

@@ -133,7 +133,9 @@ void addRun(const BatchRun& run, PlannerSamples& samples) {
 
 void conclude(Sample& sample) {
   for (const double value : sample.values) sample.histogram.add(value);
-  sample.w = metrics::normalityMeasures(sample.values, "no CBV was driven").w;
+  sample.w =
+      metrics::normalityMeasures({sample.values.begin(), sample.values.end()}, "no CBV was driven")
+          .w;
 }
 
 PlannerSamples samplesOf(const ShownSystem& system, const std::vector<BatchRun>& runs) {

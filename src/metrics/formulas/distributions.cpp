@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
-#include <boost/sort/pdqsort/pdqsort.hpp>
 #include <cmath>
 #include <initializer_list>
 #include <numeric>
@@ -133,9 +132,8 @@ ShapiroWilk shapiroWilk(std::vector<double> samples) {
 namespace {
 
 /// Every k-th sample, k the smallest that leaves no more than the test allows.
-std::vector<double> thinned(const std::vector<double>& samples, std::size_t& every) {
+std::vector<double> thinned(const std::pmr::vector<double>& samples, std::size_t& every) {
   every = (samples.size() + kShapiroWilkMost - 1) / kShapiroWilkMost;
-  if (every <= 1) return samples;
   std::vector<double> kept;
   for (std::size_t i = 0; i < samples.size(); i += every) kept.push_back(samples[i]);
   return kept;
@@ -143,7 +141,7 @@ std::vector<double> thinned(const std::vector<double>& samples, std::size_t& eve
 
 }  // namespace
 
-NormalityMeasures normalityMeasures(const std::vector<double>& samples,
+NormalityMeasures normalityMeasures(const std::pmr::vector<double>& samples,
                                     const char* reason_when_empty) {
   NormalityMeasures measures;
   if (samples.empty()) {
@@ -168,10 +166,7 @@ NormalityMeasures normalityMeasures(const std::vector<double>& samples,
 
 namespace {
 
-bool allFinite(const std::vector<double>& samples) {
-  return !samples.empty() && std::all_of(samples.begin(), samples.end(),
-                                         [](double sample) { return std::isfinite(sample); });
-}
+bool isUsable(const SortedSamples& samples) { return !samples.empty() && samples.allFinite(); }
 
 /// Integral of the standard normal distribution function from -infinity to z: z Phi(z) + phi(z).
 double distributionIntegral(double z) {
@@ -189,7 +184,7 @@ double differenceIntegral(double share, double begin, double end) {
   return std::max(0.0, below) + std::max(0.0, above);
 }
 
-double meanDistance(const std::vector<double>& samples, double place) {
+double meanDistance(const std::pmr::vector<double>& samples, double place) {
   double sum = 0.0;
   for (const double sample : samples) sum += std::abs(sample - place);
   return sum / static_cast<double>(samples.size());
@@ -197,10 +192,11 @@ double meanDistance(const std::vector<double>& samples, double place) {
 
 }  // namespace
 
-std::optional<double> wassersteinDistance(std::vector<double> first, std::vector<double> second) {
-  if (!allFinite(first) || !allFinite(second)) return std::nullopt;
-  boost::sort::pdqsort_branchless(first.begin(), first.end());
-  boost::sort::pdqsort_branchless(second.begin(), second.end());
+std::optional<double> wassersteinDistance(const SortedSamples& first_samples,
+                                          const SortedSamples& second_samples) {
+  if (!isUsable(first_samples) || !isUsable(second_samples)) return std::nullopt;
+  const std::pmr::vector<double>& first = first_samples.sorted();
+  const std::pmr::vector<double>& second = second_samples.sorted();
   const double first_share = 1.0 / static_cast<double>(first.size());
   const double second_share = 1.0 / static_cast<double>(second.size());
   std::size_t i = 0;
@@ -219,20 +215,23 @@ std::optional<double> wassersteinDistance(std::vector<double> first, std::vector
   return distance;
 }
 
-std::optional<double> wassersteinDistanceToNormal(std::vector<double> samples, double mean,
+std::optional<double> wassersteinDistanceToNormal(const SortedSamples& samples, double mean,
                                                   double standard_deviation) {
-  if (!allFinite(samples) || !std::isfinite(mean) || !std::isfinite(standard_deviation) ||
+  if (!isUsable(samples) || !std::isfinite(mean) || !std::isfinite(standard_deviation) ||
       standard_deviation < 0.0) {
     return std::nullopt;
   }
-  if (standard_deviation == 0.0) return meanDistance(samples, mean);
-  for (double& sample : samples) sample = (sample - mean) / standard_deviation;
-  std::sort(samples.begin(), samples.end());
+  const std::pmr::vector<double>& sorted = samples.sorted();
+  if (standard_deviation == 0.0) return meanDistance(sorted, mean);
+  const auto normed = [&](double sample) { return (sample - mean) / standard_deviation; };
   // Left of all samples the distance is Phi, right of them 1 - Phi(z) = Phi(-z).
-  double distance = distributionIntegral(samples.front()) + distributionIntegral(-samples.back());
-  const double count = static_cast<double>(samples.size());
-  for (std::size_t i = 1; i < samples.size(); ++i)
-    distance += differenceIntegral(static_cast<double>(i) / count, samples[i - 1], samples[i]);
+  double distance =
+      distributionIntegral(normed(sorted.front())) + distributionIntegral(-normed(sorted.back()));
+  const double count = static_cast<double>(sorted.size());
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    distance += differenceIntegral(static_cast<double>(i) / count, normed(sorted[i - 1]),
+                                   normed(sorted[i]));
+  }
   return standard_deviation * distance;
 }
 

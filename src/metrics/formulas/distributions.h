@@ -2,11 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <memory_resource>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/formulas/sorted_samples.h"
 
 namespace cdiff::metrics {
 
@@ -35,7 +37,7 @@ struct NormalityMeasures {
 /// More than 5000 samples: every k-th in time order, k the smallest that leaves no more; `reason`
 /// then says "1 in k of N samples taken" and n counts those taken. Absent with a reason for fewer
 /// than three, for equal values, and with `reason_when_empty` for none.
-NormalityMeasures normalityMeasures(const std::vector<double>& samples,
+NormalityMeasures normalityMeasures(const std::pmr::vector<double>& samples,
                                     const char* reason_when_empty);
 
 /// Quantile of the standard normal distribution at a probability in (0, 1).
@@ -45,13 +47,13 @@ double normalQuantile(double probability);
 // samples' unit: W1 = integral |F_a(x) - F_b(x)| dx.
 
 /// Samples of any two sizes; nullopt when one is empty or holds a value that is not finite.
-std::optional<double> wassersteinDistance(std::vector<double> first, std::vector<double> second);
+std::optional<double> wassersteinDistance(const SortedSamples& first, const SortedSamples& second);
 
 /// Distance to the normal distribution, exact: between two order statistics F_a is a constant c,
 /// and |c - Phi| has the antiderivative +-(c z - z Phi(z) - phi(z)), split where Phi(z) = c. A
 /// deviation of 0 puts all mass at the mean. nullopt as above, and for parameters that are not
 /// finite or a negative deviation.
-std::optional<double> wassersteinDistanceToNormal(std::vector<double> samples, double mean,
+std::optional<double> wassersteinDistanceToNormal(const SortedSamples& samples, double mean,
                                                   double standard_deviation);
 
 }  // namespace cdiff::metrics

@@ -9,7 +9,10 @@
 
 namespace cdiff::metrics {
 
-double quantileOf(const std::vector<double>& sorted, double share, QuantileRule rule) {
+namespace {
+
+template <class Values>
+double quantile(const Values& sorted, double share, QuantileRule rule) {
   const auto n = static_cast<double>(sorted.size());
   if (rule == QuantileRule::kNearestRank)
     return sorted[static_cast<std::size_t>(std::clamp(std::ceil(share * n), 1.0, n)) - 1];
@@ -19,6 +22,16 @@ double quantileOf(const std::vector<double>& sorted, double share, QuantileRule 
   const auto below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (place - std::floor(place)) * (sorted[above] - sorted[below]);
+}
+
+}  // namespace
+
+double quantileOf(const std::vector<double>& sorted, double share, QuantileRule rule) {
+  return quantile(sorted, share, rule);
+}
+
+double quantileOf(const std::pmr::vector<double>& sorted, double share, QuantileRule rule) {
+  return quantile(sorted, share, rule);
 }
 
 double expandedTail(std::size_t clusters) {

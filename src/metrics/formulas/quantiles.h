@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory_resource>
 #include <vector>
 
 namespace cdiff::metrics {
@@ -17,6 +18,7 @@ enum class QuantileRule {
 
 /// The quantile at `share` in [0, 1] of values in ascending order, at least one.
 double quantileOf(const std::vector<double>& sorted, double share, QuantileRule rule);
+double quantileOf(const std::pmr::vector<double>& sorted, double share, QuantileRule rule);
 
 /// Share of replicates that the expanded percentile interval of 95 % leaves out at each end
 /// (Hesterberg 2015, The American Statistician 69, 371-386, section 5.3):

@@ -106,7 +106,8 @@ Markup conflictRoutes(const record::SessionResult& result, const MapCanvas& canv
   Markup svg;
   for (const record::CbvRecord& record : result.cbv.records()) {
     const std::string style = styleOf(VehicleRole::kCbv, record.vehicle_id, result.cbv);
-    svg += svgPath("planned " + style, canvas.line(inPlane(record.route)),
+    svg += svgPath("planned " + style,
+                   canvas.line(inPlane({record.route.begin(), record.route.end()})),
                    "conflict-aware route of " + record.vehicle_id);
   }
   return svg;

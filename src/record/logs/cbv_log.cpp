@@ -175,16 +175,19 @@ double conflictArcLength(const geometry::Polyline& path, const cbv::ConflictPoin
   return path.project(conflict.position.head<2>(), begin, end).arc_length;
 }
 
-CbvRecord newRecord(const cbv::CbvAssignment& assignment) {
-  CbvRecord record;
-  record.slot = assignment.slot;
-  record.vehicle_id = assignment.vehicle_id;
-  record.selected_tick = assignment.selected_tick;
-  record.interaction_score = assignment.interaction_score;
-  record.conflict_point = assignment.conflict_point;
-  record.route_length = assignment.conflict_aware_route.length();
-  record.route = assignment.conflict_aware_route.path().points();
-  return record;
+CbvRecord newRecord(const cbv::CbvAssignment& assignment, std::pmr::memory_resource* memory) {
+  const map::Route& route = assignment.conflict_aware_route;
+  const std::vector<Eigen::Vector3d>& points = route.path().points();
+  return {assignment.slot,
+          assignment.vehicle_id,
+          assignment.selected_tick,
+          assignment.interaction_score,
+          assignment.conflict_point,
+          0,
+          std::nullopt,
+          kSessionEnd,
+          route.length(),
+          {points.begin(), points.end(), memory}};
 }
 
 bool sameStay(const CbvRecord& record, const cbv::CbvAssignment& assignment) {
@@ -228,7 +231,7 @@ CbvRecord& CbvLog::recordOf(const cbv::CbvAssignment& assignment) {
   if (!stay.path.empty()) {
     stay.conflict_arc_length = conflictArcLength(stay.path, assignment.conflict_point);
   }
-  records_.push_back(newRecord(assignment));
+  records_.push_back(newRecord(assignment, rejected_vehicles_.get_allocator().resource()));
   return records_.back();
 }
 
@@ -261,6 +264,30 @@ void CbvLog::close(const cbv::CbvSelection& selection) {
   }
 }
 
+namespace {
+
+/// An approach whose frame lies in `memory`.
+Approach emptyApproach(std::pmr::memory_resource* memory) {
+  TimelineFrame frame{0.0,
+                      std::pmr::vector<TimelinePose>(memory),
+                      std::pmr::vector<TimelineAttention>(memory),
+                      {},
+                      false};
+  return {{}, 0.0, 0.0, {}, {std::move(frame), std::pmr::vector<TimelineVehicle>(memory)},
+          {}, {},  {},  {}};
+}
+
+/// Leaves of an approach the frame of the snapshot, which may be its own.
+void reduce(Approach& approach, const traffic::TrafficSnapshot& snapshot) {
+  approach.frame = loneFrame(snapshot);
+  approach.snapshot = {};
+  approach.cbv_image = approach.ego_image = {};
+  approach.cbv_views.clear();
+  approach.ego_views.clear();
+}
+
+}  // namespace
+
 void ApproachLog::observe(const session::TickRecord& record) {
   const traffic::TrafficSnapshot& snapshot = *record.snapshot;
   if (record.selection != nullptr) images_.clear();  // a decision
@@ -284,17 +311,53 @@ void ApproachLog::compare(const traffic::TrafficSnapshot& snapshot, const traffi
   const double gap = geometry::distance(ego.box(), cbv.box());
   if (!std::isfinite(gap)) return;
   const auto [known, added] = index_by_id_.emplace(cbv.id, approaches_.size());
-  if (added) approaches_.emplace_back();
+  if (added) approaches_.push_back(emptyApproach(approaches_.get_allocator().resource()));
   Approach& best = approaches_[known->second];
   if (!added && best.gap <= gap) return;
   best.vehicle_id = cbv.id;
   best.gap = gap;
   best.center_distance = (ego.state.position - cbv.state.position).norm();
-  best.snapshot = snapshot;
-  best.cbv_image = imageOf(cbv.cbv_slot);
-  best.ego_image = imageOf(traffic::kEgoSlot);
-  best.cbv_views = latestViews(cbv.cbv_slot);
-  best.ego_views = latestViews(traffic::kEgoSlot);
+  if (keepsWhole(known->second)) {
+    keepWhole(snapshot, cbv.cbv_slot, best);
+  } else {
+    reduce(best, snapshot);
+  }
+}
+
+/// Whether the approach is one of the nearest now. One that is not any more is reduced.
+bool ApproachLog::keepsWhole(std::size_t index) {
+  if (std::find(whole_.begin(), whole_.end(), index) == whole_.end()) whole_.push_back(index);
+  if (whole_.size() <= kMostWhole) return true;
+  const auto farthest =
+      std::max_element(whole_.begin(), whole_.end(), [&](std::size_t left, std::size_t right) {
+        return std::make_pair(approaches_[left].gap, left) <
+               std::make_pair(approaches_[right].gap, right);
+      });
+  Approach& far = approaches_[*farthest];
+  const bool own = *farthest == index;
+  whole_.erase(farthest);
+  if (!own) reduce(far, far.snapshot);
+  return !own;
+}
+
+void ApproachLog::keepWhole(const traffic::TrafficSnapshot& snapshot, int slot,
+                            Approach& approach) {
+  approach.snapshot = snapshot;
+  approach.cbv_image = imageOf(slot);
+  approach.ego_image = imageOf(traffic::kEgoSlot);
+  approach.cbv_views = latestViews(slot);
+  approach.ego_views = latestViews(traffic::kEgoSlot);
+}
+
+std::vector<const Approach*> ApproachLog::nearest() const {
+  std::vector<const Approach*> found;
+  for (const Approach& approach : approaches_) {
+    if (approach.isWhole()) found.push_back(&approach);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Approach* left, const Approach* right) {
+    return left->gap < right->gap;
+  });
+  return found;
 }
 
 std::vector<session::SlotImage> ApproachLog::latestViews(int slot) const {

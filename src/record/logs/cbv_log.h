@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory_resource>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -12,6 +13,7 @@
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/geometry/shapes.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "record/logs/driving_log.h"
 #include "rendering/front_camera.h"
 #include "session/session_observer.h"
 #include "session/session_setup.h"
@@ -98,8 +100,8 @@ struct CbvRecord {
       0;  ///< decisions that found it driven as CBV: not yet that of its selection
   std::optional<std::uint64_t> released_tick;  ///< absent when the session ended first
   std::string release_reason = kSessionEnd;
-  double route_length = 0.0;           ///< length of the conflict-aware route [m]
-  std::vector<Eigen::Vector3d> route;  ///< points of the conflict-aware route, map frame [m]
+  double route_length = 0.0;                ///< length of the conflict-aware route [m]
+  std::pmr::vector<Eigen::Vector3d> route;  ///< points of the conflict-aware route, map frame [m]
   /// Reached on the conflict-aware route, as of the decisions of the stay and that of its release
   /// [m].
   double arc_length = 0.0;
@@ -117,16 +119,20 @@ struct CbvRecord {
 /// candidate.
 class CbvLog {
  public:
+  /// How often each vehicle was rejected: by reason, then by id.
+  using RejectedVehicles = std::pmr::map<std::string, std::pmr::map<std::string, std::size_t>>;
+
+  /// What grows with the session lies in `memory`, which must outlive the log.
+  explicit CbvLog(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : rejected_vehicles_(memory) {}
   /// One decision in order.
   void observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection& selection);
   /// In order of selection.
   const std::vector<CbvRecord>& records() const { return records_; }
   /// Candidates rejected, over all decisions, by reason.
   const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
-  /// The same for each vehicle: by reason, then by id.
-  const std::map<std::string, std::map<std::string, std::size_t>>& rejectedVehicles() const {
-    return rejected_vehicles_;
-  }
+  /// The same for each vehicle.
+  const RejectedVehicles& rejectedVehicles() const { return rejected_vehicles_; }
 
  private:
   struct Stay {
@@ -141,15 +147,17 @@ class CbvLog {
   std::vector<CbvRecord> records_;
   std::map<int, Stay> open_;  ///< slot -> its present stay
   std::map<std::string, std::size_t> rejected_;
-  std::map<std::string, std::map<std::string, std::size_t>> rejected_vehicles_;
+  RejectedVehicles rejected_vehicles_;
 };
 
-/// The moment at which a CBV came nearest to the ego: the snapshot, and the images of both.
+/// The moment at which a CBV came nearest to the ego: the snapshot, and the images of both. Of
+/// those that are not among the nearest of the session, a frame alone.
 struct Approach {
   std::string vehicle_id;
-  double gap = 0.0;              ///< between the boxes of ego and CBV [m]
-  double center_distance = 0.0;  ///< between their centers [m]
-  traffic::TrafficSnapshot snapshot;
+  double gap = 0.0;                   ///< between the boxes of ego and CBV [m]
+  double center_distance = 0.0;       ///< between their centers [m]
+  traffic::TrafficSnapshot snapshot;  ///< without vehicles where a frame is kept alone
+  LoneFrame frame;                    ///< there
   traffic::CameraImage
       cbv_image;  ///< image of the latest decision; empty when its planner does not see
   traffic::CameraImage ego_image;  ///< likewise of the ego
@@ -157,17 +165,28 @@ struct Approach {
   std::vector<session::SlotImage> cbv_views;
   std::vector<session::SlotImage> ego_views;
 
-  double time() const { return snapshot.time; }
+  bool isWhole() const { return !snapshot.vehicles.empty(); }
+  double time() const { return isWhole() ? snapshot.time : frame.frame.time; }
+  /// The frame of its tick.
+  LoneFrame event() const { return isWhole() ? loneFrame(snapshot) : frame; }
 };
 
 /// The closest approach of each CBV to the ego while it was driven: the tick with the smallest gap
-/// between their boxes (the first of equals), its whole snapshot, and what planners saw then.
+/// between their boxes (the first of equals), its whole snapshot, and what planners saw then. The
+/// kMostWhole nearest are kept whole.
 class ApproachLog {
  public:
+  static constexpr std::size_t kMostWhole = 4;
+
+  /// What grows with the session lies in `memory`, which must outlive the log.
+  explicit ApproachLog(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : approaches_(memory) {}
   /// Every tick in order.
   void observe(const session::TickRecord& record);
   /// In the order in which the vehicles were first driven as CBVs on the ego's level.
-  const std::vector<Approach>& approaches() const { return approaches_; }
+  const std::pmr::vector<Approach>& approaches() const { return approaches_; }
+  /// Those that are kept whole: by gap, the first of equals first.
+  std::vector<const Approach*> nearest() const;
   /// The approach of a vehicle, or nullptr.
   const Approach* find(const std::string& vehicle_id) const;
   /// The images of all cameras of a slot's vehicle at the latest decision; empty for rigs of one.
@@ -176,10 +195,13 @@ class ApproachLog {
  private:
   void compare(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& ego,
                const traffic::Vehicle& cbv);
+  bool keepsWhole(std::size_t index);
+  void keepWhole(const traffic::TrafficSnapshot& snapshot, int slot, Approach& approach);
   traffic::CameraImage imageOf(int slot) const;
 
   std::vector<session::SlotImage> images_;  ///< of the latest decision
-  std::vector<Approach> approaches_;
+  std::pmr::vector<Approach> approaches_;
+  std::vector<std::size_t> whole_;  ///< indices of those that are kept whole
   std::unordered_map<std::string, std::size_t> index_by_id_;
 };
 

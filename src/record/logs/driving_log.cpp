@@ -90,51 +90,73 @@ void addEncounter(TimelinePose& pose, const traffic::TrafficSnapshot& snapshot,
 
 }  // namespace
 
-Timeline::Timeline(double simulation_step)
+LoneFrame loneFrame(const traffic::TrafficSnapshot& snapshot) {
+  LoneFrame lone;
+  lone.frame.time = snapshot.time;
+  lone.frame.poses.reserve(snapshot.vehicles.size());
+  lone.vehicles.reserve(snapshot.vehicles.size());
+  const traffic::Vehicle* ego = snapshot.ego();
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    TimelinePose& pose = lone.frame.poses.emplace_back(poseOf(vehicle));
+    pose.vehicle = static_cast<std::uint32_t>(lone.vehicles.size());
+    lone.vehicles.push_back({vehicle.id, vehicle.dimensions.length, vehicle.dimensions.width});
+    const bool background = vehicle.role == traffic::VehicleRole::kBackground;
+    if (!background) addEncounter(pose, snapshot, ego, vehicle);
+  }
+  return lone;
+}
+
+Timeline::Timeline(double simulation_step, std::pmr::memory_resource* memory)
     : ticks_per_frame_(
-          static_cast<std::uint64_t>(std::max(1.0, std::round(kFramePeriod / simulation_step)))) {}
+          static_cast<std::uint64_t>(std::max(1.0, std::round(kFramePeriod / simulation_step)))),
+      vehicles_(memory),
+      index_by_id_(memory),
+      frames_(memory) {}
 
 void Timeline::observe(const traffic::TrafficSnapshot& snapshot) {
   duration_ = snapshot.time;
   const bool last = snapshot.status != traffic::SessionStatus::kRunning;
   const bool contact = !snapshot.contacts.empty();
   if (last || contact || snapshot.tick % ticks_per_frame_ == 0) {
-    frames_.push_back(frameOf(snapshot));
+    frames_.push_back(kept(frameOf(snapshot)));
     frames_.back().event = contact;
   }
   addContacts(snapshot);
   updateGap(snapshot);
 }
 
-void Timeline::addEvent(const traffic::TrafficSnapshot& snapshot) {
+void Timeline::addEvent(const LoneFrame& event) {
+  const double event_time = event.frame.time;
   const auto next =
-      std::lower_bound(frames_.begin(), frames_.end(), snapshot.time,
+      std::lower_bound(frames_.begin(), frames_.end(), event_time,
                        [](const TimelineFrame& frame, double time) { return frame.time < time; });
-  if (next != frames_.end() && next->time == snapshot.time) {
+  if (next != frames_.end() && next->time == event_time) {
     next->event = true;
     return;
   }
-  TimelineFrame frame = frameOf(snapshot);
+  TimelineFrame frame = adopt(event);
   frame.event = true;
   if (next != frames_.begin()) {
     frame.gazes = std::prev(next)->gazes;
     frame.perception = std::prev(next)->perception;
   }
-  frames_.insert(next, std::move(frame));
+  frames_.insert(next, kept(frame));
 }
 
 TimelineFrame Timeline::frameOf(const traffic::TrafficSnapshot& snapshot) {
-  TimelineFrame frame;
-  frame.time = snapshot.time;
-  frame.poses.reserve(snapshot.vehicles.size());
-  const traffic::Vehicle* ego = snapshot.ego();
-  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
-    TimelinePose& pose = frame.poses.emplace_back(poseOf(vehicle));
-    pose.vehicle = indexOf(vehicle);
-    const bool background = vehicle.role == traffic::VehicleRole::kBackground;
-    if (!background) addEncounter(pose, snapshot, ego, vehicle);
-  }
-  return frame;
+  return adopt(loneFrame(snapshot));
+}
+
+/// The frame in the timeline's memory.
+TimelineFrame Timeline::kept(const TimelineFrame& frame) {
+  std::pmr::memory_resource* memory = frames_.get_allocator().resource();
+  return {frame.time, {frame.poses, memory}, {frame.gazes, memory}, frame.perception, frame.event};
+}
+
+/// The frame with its poses counted in the timeline's vehicles.
+TimelineFrame Timeline::adopt(LoneFrame lone) {
+  for (TimelinePose& pose : lone.frame.poses) pose.vehicle = indexOf(lone.vehicles[pose.vehicle]);
+  return std::move(lone.frame);
 }
 
 void Timeline::observeAttention(const traffic::TrafficSnapshot& snapshot,
@@ -206,12 +228,10 @@ void Timeline::updateGap(const traffic::TrafficSnapshot& snapshot) {
   }
 }
 
-std::uint32_t Timeline::indexOf(const traffic::Vehicle& vehicle) {
+std::uint32_t Timeline::indexOf(const TimelineVehicle& vehicle) {
   const auto index = static_cast<std::uint32_t>(vehicles_.size());
   const auto [entry, added] = index_by_id_.emplace(vehicle.id, index);
-  if (added) {
-    vehicles_.push_back({vehicle.id, vehicle.dimensions.length, vehicle.dimensions.width});
-  }
+  if (added) vehicles_.push_back(vehicle);
   return entry->second;
 }
 

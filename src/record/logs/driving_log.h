@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -94,11 +95,20 @@ struct TimelineAttention {
 /// Poses of all vehicles at one time.
 struct TimelineFrame {
   double time = 0.0;  ///< [s]
-  std::vector<TimelinePose> poses;
-  std::vector<TimelineAttention> gazes;  ///< the largest of each driver, of planners that say them
-  planning::Perception perception;       ///< of the ego's planner; of forecasts the likeliest alone
+  std::pmr::vector<TimelinePose> poses;
+  std::pmr::vector<TimelineAttention>
+      gazes;                        ///< the largest of each driver, of planners that say them
+  planning::Perception perception;  ///< of the ego's planner; of forecasts the likeliest alone
   bool event = false;  ///< a contact, or the closest approach of a CBV: thinning keeps it
 };
+
+/// The frame of a snapshot by itself: its poses count in its own vehicles.
+struct LoneFrame {
+  TimelineFrame frame;
+  std::pmr::vector<TimelineVehicle> vehicles;  ///< of the poses, in their order
+};
+
+LoneFrame loneFrame(const traffic::TrafficSnapshot& snapshot);
 
 /// A contact of two vehicles, with its place in the map frame [m].
 struct TimelineContact {
@@ -121,7 +131,9 @@ struct SmallestGap {
 /// all ticks.
 class Timeline {
  public:
-  explicit Timeline(double simulation_step);
+  /// What grows with the session lies in `memory`, which must outlive the timeline.
+  explicit Timeline(double simulation_step,
+                    std::pmr::memory_resource* memory = std::pmr::get_default_resource());
   void observe(const traffic::TrafficSnapshot& snapshot);
   /// What the planners looked at, after `observe` of the snapshot that they decided on. Of each
   /// driver the eight largest weights are kept, those below 0.02 not.
@@ -133,13 +145,13 @@ class Timeline {
 
   /// Adds the frame of an earlier tick that turned out to be an event, after the last `observe`. It
   /// has the attention and perception of the frame before it.
-  void addEvent(const traffic::TrafficSnapshot& snapshot);
+  void addEvent(const LoneFrame& event);
   /// A frame of a snapshot, which is not kept; its vehicles are.
   TimelineFrame frameOf(const traffic::TrafficSnapshot& snapshot);
 
   /// In order of appearance.
-  const std::vector<TimelineVehicle>& vehicles() const { return vehicles_; }
-  const std::vector<TimelineFrame>& frames() const { return frames_; }
+  const std::pmr::vector<TimelineVehicle>& vehicles() const { return vehicles_; }
+  const std::pmr::vector<TimelineFrame>& frames() const { return frames_; }
   const std::vector<TimelineContact>& contacts() const { return contacts_; }
   const std::optional<SmallestGap>& smallestGap() const { return smallest_gap_; }
   /// Id of the vehicle that another one touched last in [begin, end] [s]; nullopt when none.
@@ -150,13 +162,15 @@ class Timeline {
  private:
   void addContacts(const traffic::TrafficSnapshot& snapshot);
   void updateGap(const traffic::TrafficSnapshot& snapshot);
-  std::uint32_t indexOf(const traffic::Vehicle& vehicle);
+  TimelineFrame kept(const TimelineFrame& frame);
+  TimelineFrame adopt(LoneFrame lone);
+  std::uint32_t indexOf(const TimelineVehicle& vehicle);
 
   std::uint64_t ticks_per_frame_;
   double duration_ = 0.0;
-  std::vector<TimelineVehicle> vehicles_;
-  std::unordered_map<std::string, std::uint32_t> index_by_id_;
-  std::vector<TimelineFrame> frames_;
+  std::pmr::vector<TimelineVehicle> vehicles_;
+  std::pmr::unordered_map<std::string, std::uint32_t> index_by_id_;
+  std::pmr::vector<TimelineFrame> frames_;
   std::vector<TimelineContact> contacts_;
   std::optional<SmallestGap> smallest_gap_;
 };

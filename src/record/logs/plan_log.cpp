@@ -26,19 +26,25 @@ Waypoint between(const Waypoint& from, const Waypoint& to, double share) {
           from.speed + share * (to.speed - from.speed)};
 }
 
-LoggedPlan planOf(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& vehicle,
-                  const planning::PlannedAction& action) {
-  LoggedPlan plan;
-  plan.tick = snapshot.tick;
-  plan.time = snapshot.time;
-  plan.start = waypointOf(vehicle.state);
-  plan.state_mismatch = action.state_mismatch;
-  plan.candidates = action.candidates;
-  plan.points.reserve(action.rollout.size());
-  for (const planning::RolloutPoint& point : action.rollout) {
-    plan.points.push_back(waypointOf(point.state));
+using Memory = std::pmr::memory_resource*;
+
+std::pmr::vector<Waypoint> pointsOf(const planning::PlannedAction& action, Memory memory) {
+  std::pmr::vector<Waypoint> points(memory);
+  points.reserve(action.rollout.size());
+  for (const planning::RolloutPoint& point : action.rollout)
+    points.push_back(waypointOf(point.state));
+  return points;
+}
+
+std::pmr::vector<LoggedCandidate> candidatesOf(const planning::PlannedAction& action,
+                                               Memory memory) {
+  std::pmr::vector<LoggedCandidate> candidates(memory);
+  candidates.reserve(action.candidates.size());
+  for (const planning::PlannedCandidate& candidate : action.candidates) {
+    const auto& places = candidate.places;
+    candidates.push_back({{places.begin(), places.end(), memory}, candidate.score});
   }
-  return plan;
+  return candidates;
 }
 
 std::vector<double> mismatches(const VehiclePlans& vehicle) {
@@ -64,13 +70,18 @@ void PlanLog::observe(const session::TickRecord& record) {
   for (const planning::PlannedAction& action : *record.actions) {
     const traffic::Vehicle* vehicle = snapshot.find(action.vehicle_id);
     if (action.slot < 0 || action.rollout.empty() || vehicle == nullptr) continue;
-    plansOf(*vehicle).plans.push_back(planOf(snapshot, *vehicle, action));
+    plansOf(*vehicle).plans.push_back({snapshot.tick, snapshot.time, waypointOf(vehicle->state),
+                                       pointsOf(action, memory_), action.state_mismatch,
+                                       candidatesOf(action, memory_)});
   }
 }
 
 VehiclePlans& PlanLog::plansOf(const traffic::Vehicle& vehicle) {
   const auto [known, added] = index_by_id_.emplace(vehicle.id, vehicles_.size());
-  if (added) vehicles_.push_back({vehicle.id, vehicle.dimensions, {}, {}});
+  if (added) {
+    vehicles_.push_back({vehicle.id, vehicle.dimensions, std::pmr::vector<LoggedPlan>(memory_),
+                         std::pmr::vector<std::pair<std::uint64_t, Waypoint>>(memory_)});
+  }
   return vehicles_[known->second];
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory_resource>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -21,15 +22,21 @@ struct Waypoint {
   double speed = 0.0;                                  ///< [m/s]
 };
 
+/// A plan that a planner weighed against others (map frame).
+struct LoggedCandidate {
+  std::pmr::vector<Eigen::Vector2d> places;  ///< as in planning::PlannedCandidate [m]
+  double score = 0.0;                        ///< in the planner's own measure
+};
+
 /// The plan that a vehicle was given at one decision: states 0.1 s apart, the first of them 0.1 s
 /// after the decision.
 struct LoggedPlan {
   std::uint64_t tick = 0;
   double time = 0.0;  ///< [s]
   Waypoint start;     ///< state of the vehicle at the decision
-  std::vector<Waypoint> points;
-  double state_mismatch = 0.0;                         ///< see planning::PlannedAction [m]
-  std::vector<planning::PlannedCandidate> candidates;  ///< that it was weighed against
+  std::pmr::vector<Waypoint> points;
+  double state_mismatch = 0.0;                   ///< see planning::PlannedAction [m]
+  std::pmr::vector<LoggedCandidate> candidates;  ///< that it was weighed against
 
   double horizon() const;  ///< duration of the plan [s]
 };
@@ -38,8 +45,9 @@ struct LoggedPlan {
 struct VehiclePlans {
   std::string vehicle_id;
   traffic::VehicleDimensions dimensions;
-  std::vector<LoggedPlan> plans;
-  std::vector<std::pair<std::uint64_t, Waypoint>> driven;  ///< (tick, state) while driven as CBV
+  std::pmr::vector<LoggedPlan> plans;
+  std::pmr::vector<std::pair<std::uint64_t, Waypoint>>
+      driven;  ///< (tick, state) while driven as CBV
 };
 
 /// Records what each CBV planned at its decisions and what it then drove (map frame, SI units).
@@ -48,7 +56,10 @@ struct VehiclePlans {
 /// and the figure of execution.
 class PlanLog {
  public:
-  explicit PlanLog(double simulation_step) : simulation_step_(simulation_step) {}
+  /// What grows with the session lies in `memory`, which must outlive the log.
+  explicit PlanLog(double simulation_step,
+                   std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : simulation_step_(simulation_step), memory_(memory) {}
   /// Call at every tick, in order.
   void observe(const session::TickRecord& record);
 
@@ -73,6 +84,7 @@ class PlanLog {
  private:
   VehiclePlans& plansOf(const traffic::Vehicle& vehicle);
   double simulation_step_;
+  std::pmr::memory_resource* memory_;
   std::vector<VehiclePlans> vehicles_;
   std::unordered_map<std::string, std::size_t> index_by_id_;
 };

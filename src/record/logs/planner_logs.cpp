@@ -43,7 +43,7 @@ void LatencyLog::observe(const std::vector<session::PlannerLatency>& latencies) 
 std::map<std::string, LatencySummary> LatencyLog::summaries() const {
   std::map<std::string, LatencySummary> summaries;
   for (const auto& [planner, samples] : samples_) {
-    std::vector<double> sorted = samples;
+    std::vector<double> sorted(samples.begin(), samples.end());
     std::sort(sorted.begin(), sorted.end());
     summaries[planner] = {nearestRank(sorted, 0.5), nearestRank(sorted, 0.95), sorted.back(),
                           sorted.size()};
@@ -69,7 +69,7 @@ void LateLog::observe(const std::vector<AnswerTiming>& timings) {
 std::map<std::string, LateCounts> LateLog::counts() const {
   std::map<std::string, LateCounts> all = counts_;
   for (const auto& [planner, samples] : lateness_) {
-    std::vector<double> sorted = samples;
+    std::vector<double> sorted(samples.begin(), samples.end());
     std::sort(sorted.begin(), sorted.end());
     LateCounts& counts = all[planner];
     counts.median = nearestRank(sorted, 0.5);
@@ -126,7 +126,9 @@ void GuidanceLog::observe(const session::TickRecord& record) {
     observeChallenge(action);
     trust_region_shares_.push_back(action.guidance.trust_region_share);
     for (const guidance::ObjectiveReport& report : action.guidance.objectives) {
-      seriesOf(report.name).samples.push_back({record.snapshot->time, action.vehicle_id, report});
+      seriesOf(report.name)
+          .samples.push_back({record.snapshot->time, action.vehicle_id, report.weight, report.value,
+                              report.gradient_norm, report.capped_share, report.dropped});
     }
   }
 }
@@ -136,22 +138,24 @@ GuidanceSeries& GuidanceLog::seriesOf(const std::string& objective) {
       std::find_if(series_.begin(), series_.end(),
                    [&](const GuidanceSeries& series) { return series.objective == objective; });
   if (known != series_.end()) return *known;
-  series_.push_back({objective, {}});
+  const std::pmr::polymorphic_allocator<GuidanceSample> memory =
+      trust_region_shares_.get_allocator().resource();
+  series_.push_back({objective, std::pmr::vector<GuidanceSample>(memory)});
   return series_.back();
 }
 
 ObjectiveSummary summaryOf(const GuidanceSeries& series) {
-  const auto mean = [&](double guidance::ObjectiveReport::*quantity) {
+  const auto mean = [&](double GuidanceSample::*quantity) {
     std::vector<double> values;
-    for (const GuidanceSample& sample : series.samples) values.push_back(sample.report.*quantity);
+    for (const GuidanceSample& sample : series.samples) values.push_back(sample.*quantity);
     return summaryOf(values).mean;
   };
   ObjectiveSummary summary;
-  if (!series.samples.empty()) summary.weight = series.samples.back().report.weight;
-  summary.value = mean(&guidance::ObjectiveReport::value);
-  summary.gradient_norm = mean(&guidance::ObjectiveReport::gradient_norm);
-  summary.capped_share = mean(&guidance::ObjectiveReport::capped_share);
-  for (const GuidanceSample& sample : series.samples) summary.dropped += sample.report.dropped;
+  if (!series.samples.empty()) summary.weight = series.samples.back().weight;
+  summary.value = mean(&GuidanceSample::value);
+  summary.gradient_norm = mean(&GuidanceSample::gradient_norm);
+  summary.capped_share = mean(&GuidanceSample::capped_share);
+  for (const GuidanceSample& sample : series.samples) summary.dropped += sample.dropped;
   summary.n = series.samples.size();
   return summary;
 }

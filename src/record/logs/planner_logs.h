@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory_resource>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,12 +36,15 @@ struct LatencySummary {
 /// Collects the wall time that each planner took per decision [ms].
 class LatencyLog {
  public:
+  /// What grows with the session lies in `memory`, which must outlive the log.
+  explicit LatencyLog(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : samples_(memory) {}
   void observe(const std::vector<session::PlannerLatency>& latencies);
   /// By planner name.
   std::map<std::string, LatencySummary> summaries() const;
 
  private:
-  std::map<std::string, std::vector<double>> samples_;
+  std::pmr::map<std::string, std::pmr::vector<double>> samples_;
 };
 
 /// How often one planner's answers were late in a paced session, how late, and what drove instead.
@@ -59,6 +63,9 @@ struct LateCounts {
 /// Collects late answers by planner, in sessions that do not wait for them (real_time_factor > 0).
 class LateLog {
  public:
+  /// What grows with the session lies in `memory`, which must outlive the log.
+  explicit LateLog(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : lateness_(memory) {}
   void observe(const std::vector<session::AnswerTiming>& timings);
   /// By planner ("cbv_identification" for the selection); empty for sessions that wait for every
   /// answer.
@@ -66,7 +73,7 @@ class LateLog {
 
  private:
   std::map<std::string, LateCounts> counts_;
-  std::map<std::string, std::vector<double>> lateness_;  ///< [s]
+  std::pmr::map<std::string, std::pmr::vector<double>> lateness_;  ///< [s]
 };
 
 /// Answers of all planners that came late or never.
@@ -78,13 +85,18 @@ std::string latenessText(const std::map<std::string, LateCounts>& counts);
 struct GuidanceSample {
   double time = 0.0;  ///< [s]
   std::string vehicle_id;
-  guidance::ObjectiveReport report;
+  // As in guidance::ObjectiveReport.
+  double weight = 0.0;
+  double value = 0.0;
+  double gradient_norm = 0.0;
+  double capped_share = 0.0;
+  std::int64_t dropped = 0;
 };
 
 /// One objective over the session.
 struct GuidanceSeries {
   std::string objective;
-  std::vector<GuidanceSample> samples;
+  std::pmr::vector<GuidanceSample> samples;
 };
 
 /// One objective summed up over the decisions at which it was active. Units of value and gradient
@@ -111,19 +123,24 @@ struct ChallengeCounts {
 /// What guidance did to the plans of CBVs: every objective's report at every decision.
 class GuidanceLog {
  public:
+  /// What grows with the session lies in `memory`, which must outlive the log.
+  explicit GuidanceLog(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : trust_region_shares_(memory) {}
   void observe(const session::TickRecord& record);
   /// In the order in which objectives appeared first.
   const std::vector<GuidanceSeries>& series() const { return series_; }
   /// Without a decision unless the mode is challenging.
   const ChallengeCounts& challenge() const { return challenge_; }
   /// Share of guided steps in which the trust region acted, over decisions with guidance.
-  SampleSummary trustRegion() const { return summaryOf(trust_region_shares_); }
+  SampleSummary trustRegion() const {
+    return summaryOf({trust_region_shares_.begin(), trust_region_shares_.end()});
+  }
 
  private:
   GuidanceSeries& seriesOf(const std::string& objective);
   std::vector<GuidanceSeries> series_;
   void observeChallenge(const planning::PlannedAction& action);
-  std::vector<double> trust_region_shares_;
+  std::pmr::vector<double> trust_region_shares_;
   ChallengeCounts challenge_;
   std::map<std::string, std::string> last_state_;  ///< by vehicle
 };
