@@ -172,17 +172,17 @@ std::unique_ptr<watch::LiveSession> makeLiveSession(const session::SessionSetup&
   return live;
 }
 
-/// Whether the session calls code of others that may end this process: plug-ins, or SUMO.
-bool mayCrash(const session::SessionSetup& setup) {
+/// Whether code of others that may end the session runs in its process: plug-ins, or SUMO.
+bool keepsTicks(const session::SessionSetup& setup) {
   return !plugins::loadPlugins().empty() || setup.options().simulation.link == "libsumo";
 }
 
-/// What a session that may crash keeps for the process that waits for this one; else nothing.
+/// What such a session keeps for the process that waits for this one; else nothing.
 std::unique_ptr<session::SessionObserver> makeReserve(const session::SessionSetup& setup,
                                                       const RunOutput& output,
                                                       session::ClosedLoop& loop) {
 #ifdef E2E_CDIFF_WITH_ROS
-  if (!mayCrash(setup)) return nullptr;
+  if (!keepsTicks(setup)) return nullptr;
   const node_graph::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
   auto reserve = std::make_unique<node_graph::ProcessReserve>(setup, output.folder, origin);
   loop.addObserver(*reserve);
@@ -304,19 +304,18 @@ int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
 /// Runs to the end and answers the exit code. A stop ends the session as interrupted. Throws
 /// InputError for a scenario that SUMO refuses, and for a folder that is in use or holds an earlier
 /// result (nothing in it is touched then); a simulator that cannot start or is lost gives a result
-/// folder with status error. A session that may crash runs in a process of its own.
+/// folder with status error. The session runs in a process of its own, which may crash.
 int runSession(PreparedRun& run, const std::atomic<bool>& stop) {
   for (const std::string& warning : session::scenarioWarnings(run.setup))
     std::cerr << "cdiff: warning: " << warning << "\n";
 #ifdef E2E_CDIFF_WITH_ROS
   const RunOutput& output = run.output;
-  if (mayCrash(run.setup)) {
-    return runWatched(
-        {run.setup, output.folder, output.overwrite, output.quiet, output.answer_timeout, stop},
-        [&] { return runHere(run, stop); });
-  }
-#endif
+  return runWatched(
+      {run.setup, output.folder, output.overwrite, output.quiet, output.answer_timeout, stop},
+      [&] { return runHere(run, stop); });
+#else
   return runHere(run, stop);
+#endif
 }
 
 struct RunArguments {

@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "core/file.h"
 #include "core/folder_lock.h"
 #include "core/forked_work.h"
+#include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "metrics/metric_registry.h"
@@ -24,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Kind of the call to a SUMO in this process.
+/// Kind of the calls to SUMO.
 constexpr const char* kSimulatorCall = "simulator";
 
 /// The exit code of the session; errors are said as the main function says them.
@@ -48,8 +50,12 @@ std::string sourceOf(const core::WorkEnd& end) {
 
 /// What ended the session, or what may have done so where that is not known.
 std::string faultText(const core::WorkEnd& end) {
-  if (end.kind == kSimulatorCall)
+  if (end.kind == kSimulatorCall && end.name == "libsumo")
     return "SUMO ended the session, in whose process it ran: " + end.how;
+  if (end.kind == kSimulatorCall) {
+    return "SUMO ended the session by an answer that " + end.name + " cannot read: " + end.how +
+           "; check the program sumo";
+  }
   if (!end.kind.empty()) {
     return end.kind + " '" + end.name + "' of " + sourceOf(end) + " ended the session: " + end.how +
            "; its author must mend it";
@@ -67,11 +73,17 @@ std::string sourceName(const core::WorkEnd& end) {
   return end.kind.empty() ? "cdiff run" : end.kind + ":" + end.name;
 }
 
+/// Whether the copy has taken the folder: it writes the session first and the summary last.
+bool hasBegun(const std::filesystem::path& folder) {
+  return core::OutputFolder::lists(folder, "session.yaml") &&
+         !core::isFile(folder / "summary.json");
+}
+
 /// Locks the folder that the copy had, or takes it where the copy had not yet begun.
 void writeResult(const WatchedRun& run, const node_graph::AbandonedSession& session) {
   std::unique_ptr<core::FolderLock> lock;
   std::unique_ptr<record::ResultFolder> folder;
-  if (node_graph::holdsReserve(run.folder)) {
+  if (hasBegun(run.folder)) {
     lock = std::make_unique<core::FolderLock>(run.folder, "cdiff run");
   } else {
     folder = std::make_unique<record::ResultFolder>(run.folder, "cdiff run", run.overwrite);

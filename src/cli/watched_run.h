@@ -10,7 +10,7 @@
 
 namespace cdiff::cli {
 
-/// A session whose plug-ins, or whose SUMO, may end or stop the process that runs it.
+/// A session that may end or stop its process: by a plug-in, by SUMO or by an answer of SUMO.
 struct WatchedRun {
   const session::SessionSetup& setup;
   std::filesystem::path folder;   ///< of the result

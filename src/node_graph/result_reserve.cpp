@@ -162,8 +162,6 @@ void ProcessReserve::observe(const session::TickRecord& record) {
   }
 }
 
-bool holdsReserve(const fs::path& results) { return core::OutputFolder::lists(results, kReserve); }
-
 namespace {
 
 /// Takes the ticks of a reserve without the faults of its bag, which ends where its process did.
@@ -244,7 +242,8 @@ std::string writeAbandonedResult(const session::SessionSetup& setup, const fs::p
                                  const AbandonedSession& session) {
   core::OutputFolder folder(results);
   folder.removeUnfinished();
-  const auto bag = holdsReserve(results) ? reservedBag(results) : std::nullopt;
+  const bool reserved = core::OutputFolder::lists(results, kReserve);
+  const auto bag = reserved ? reservedBag(results) : std::nullopt;
   const auto recorded = bag ? readableSession(*bag) : nullptr;
   const std::string simulator = recorded ? recorded->info().simulator_version : "unknown";
   page::ResultWriter writer(setup, {"cdiff run", simulator, true}, results);

@@ -84,9 +84,6 @@ struct AbandonedSession {
   double wall_seconds = 0.0;
 };
 
-/// Whether the folder holds the reserve of a process.
-bool holdsReserve(const std::filesystem::path& results);
-
 /// Writes the result of such a session into its folder: the ticks of the reserve as far as they can
 /// be read, none where there is none, and its end. The reserve goes. Returns the table that a
 /// terminal shows. Throws InputError when not even a summary can be written.

@@ -17,6 +17,7 @@
 
 #include "core/file.h"
 #include "core/file_descriptor.h"
+#include "core/forked_work.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -161,8 +162,8 @@ std::string SumoProcess::refusal() const {
   return text + (assertion.empty() ? "" : ": assertion " + assertion);
 }
 
-/// Selects this session, holds signals back (an interrupted read would look like a lost SUMO) and
-/// sets the deadline.
+/// Says what is being called, selects this session, holds signals back (an interrupted read would
+/// look like a lost SUMO) and sets the deadline.
 class TraciLink::Deadline : public Guard {
  public:
   explicit Deadline(TraciLink& link) : link_(link) {
@@ -178,6 +179,8 @@ class TraciLink::Deadline : public Guard {
   }
 
  private:
+  /// An answer that libtraci cannot read fails one of its assertions, which ends the process.
+  core::NamedCall call_{"simulator", "libtraci", core::NamedCall::Limit::kNone};
   TraciLink& link_;
   sigset_t previous_;
 };
