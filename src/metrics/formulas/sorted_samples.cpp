@@ -9,6 +9,7 @@
 namespace cdiff::metrics {
 
 SortedSamples::SortedSamples(const std::vector<double>& samples) {
+  samples_.reserve(samples.size());
   for (const double sample : samples) add(sample);
 }
 
