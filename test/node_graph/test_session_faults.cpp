@@ -203,6 +203,19 @@ TEST_F(SessionFaults, ScriptEndsThoughItsMasterIsStopped) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
+// roslaunch, and each node that begins, waits for such a master without end.
+TEST_F(SessionFaults, ScriptEndsThoughItsMasterStopsBeforeTheNodesBegin) {
+  session_.start(script("scenario:=crossing_straight", session_));
+  ASSERT_GT(session_.process("rosout"), 0) << session_.log();  // the first one after the master
+  ASSERT_TRUE(session_.signal("rosmaster", SIGSTOP)) << session_.log();
+  EXPECT_LT(session_.endAfter(200.0), 200.0) << session_.log();
+  EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
+  EXPECT_EQ(session_.summary()["status"], "error");
+  EXPECT_NE(session_.fault().find("no ROS master answers at http://"), std::string::npos)
+      << session_.fault();
+  EXPECT_EQ(session_.leftovers(), "");
+}
+
 TEST_F(SessionFaults, ScriptNamesAMasterThatDoesNotAnswer) {
   session_.start("E2E_CDIFF_MASTER=http://127.0.0.1:" + std::to_string(session_.port()) +
                  " BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS
