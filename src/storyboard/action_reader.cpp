@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
 #include "storyboard/reading.h"
 
 namespace cdiff::storyboard {
@@ -26,7 +27,10 @@ Dynamics readDynamics(const XoscElement& element, const Reading& reading) {
     return dynamics;
   dynamics.dimension =
       kDimensions[element.choice("dynamicsDimension", {"time", "distance", "rate"})];
-  dynamics.value = std::abs(element.number("value"));
+  const double value = element.number("value");
+  if (value < 0.0 && dynamics.dimension != Dimension::kRate)
+    element.fail("'value' is below 0; expected seconds or meters");
+  dynamics.value = std::abs(value);  // the target says which way a rate goes
   return dynamics;
 }
 
@@ -111,6 +115,19 @@ void readVertices(const XoscElement& shape, const char* name, const Reading& rea
   if (action.vertices.size() < 2) shape.fail("expected at least two vertices");
 }
 
+/// No more points than memory has, and none that is not finite.
+void requireUsable(const Clothoid& curve, const XoscElement& shape) {
+  constexpr double kMostLength = 5e4;      // [m]
+  constexpr double kMostCurvature = 10.0;  // [1/m]
+  if (curve.length <= 0.0 || curve.length > kMostLength)
+    shape.fail("'length' is not above 0 and up to " + core::formatNumber(kMostLength) + " m");
+  const double end = curve.curvature + curve.change * curve.length;
+  if (std::max(std::abs(curve.curvature), std::abs(end)) > kMostCurvature) {
+    shape.fail("the curvature at an end is above " + core::formatNumber(kMostCurvature) +
+               " per meter");
+  }
+}
+
 /// Its curvature is that of CARLA's coordinates where the file has them.
 void readClothoid(const XoscElement& shape, const Reading& reading,
                   FollowTrajectoryAction& action) {
@@ -118,7 +135,7 @@ void readClothoid(const XoscElement& shape, const Reading& reading,
   const char* const change = shape.has("curvaturePrime") ? "curvaturePrime" : "curvatureDot";
   action.clothoid = {side * shape.number("curvature"), side * shape.number(change),
                      shape.number("length")};
-  if (action.clothoid->length <= 0.0) shape.fail("'length' is not above 0");
+  requireUsable(*action.clothoid, shape);
   const Position start = readPosition(shape, reading);
   action.timed = action.timed && shape.has("stopTime");
   action.vertices = {{shape.number("startTime", 0.0), start},
@@ -139,6 +156,9 @@ void readSpline(const XoscElement& shape, const Reading& reading, FollowTrajecto
   if (spline.knots.size() != points + spline.order ||
       !std::is_sorted(spline.knots.begin(), spline.knots.end()))
     shape.fail("expected " + std::to_string(points + spline.order) + " knots that never fall");
+  if (spline.knots[spline.order - 1] >= spline.knots[points])
+    shape.fail("the knots do not rise between the first " + std::to_string(spline.order) +
+               " and the last; expected a curve with a length");
   if (*std::min_element(spline.weights.begin(), spline.weights.end()) <= 0.0)
     shape.fail("expected weights above 0");
   action.spline = std::move(spline);

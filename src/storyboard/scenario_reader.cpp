@@ -136,6 +136,7 @@ ManeuverGroup readGroup(const XoscElement& element, Reading& reading) {
     group.maneuvers.push_back({maneuver.text("name"), {}});
     for (const XoscElement& event : maneuver.children("Event"))
       group.maneuvers.back().events.push_back(readEvent(event, reading));
+    if (group.maneuvers.back().events.empty()) maneuver.fail("expected at least one <Event>");
   }
   return group;
 }

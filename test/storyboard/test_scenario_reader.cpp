@@ -234,6 +234,51 @@ TEST_F(ScenarioReader, ReadsCurvesOfTrajectories) {
              "'order' is not between 2 and the number of control points");
 }
 
+TEST_F(ScenarioReader, RefusesCurvesThatNobodyCanDrive) {
+  const std::string place = "<Position><WorldPosition x=\"1\" y=\"2\"/></Position>";
+  const auto errorOf = [&](const std::string& shape) {
+    return errorIn(scenario(privateAction(
+        "<RoutingAction><FollowTrajectoryAction><Trajectory name=\"t\" closed=\"false\"><Shape>" +
+        shape +
+        "</Shape></Trajectory><TimeReference><None/></TimeReference></FollowTrajectoryAction>"
+        "</RoutingAction>")));
+  };
+  const auto clothoid = [&](const std::string& change, const std::string& length) {
+    return errorOf("<Clothoid curvature=\"0\" curvatureDot=\"" + change + "\" length=\"" + length +
+                   "\">" + place + "</Clothoid>");
+  };
+  expectText(clothoid("0", "1e9"), ":11: <Clothoid>: 'length' is not above 0 and up to 50000 m");
+  expectText(clothoid("1e300", "10"), ":11: <Clothoid>: the curvature at an end");
+  std::string knots;
+  for (int i = 0; i < 4; ++i) knots += "<Knot value=\"0\"/>";
+  const std::string point = "<ControlPoint>" + place + "</ControlPoint>";
+  expectText(errorOf("<Nurbs order=\"2\">" + point + point + knots + "</Nurbs>"),
+             ":11: <Nurbs>: the knots do not rise");
+}
+
+TEST_F(ScenarioReader, ATimeBelowZeroIsRefusedAndTheSignOfARateDoesNotCount) {
+  const auto file = [&](const std::string& dimension) {
+    return scenario(privateAction(
+        "<LongitudinalAction><SpeedAction><SpeedActionDynamics dynamicsShape=\"linear\" "
+        "dynamicsDimension=\"" +
+        dimension +
+        "\" value=\"-3\"/><SpeedActionTarget><AbsoluteTargetSpeed value=\"2\"/>"
+        "</SpeedActionTarget></SpeedAction></LongitudinalAction>"));
+  };
+  expectText(errorIn(file("time")), ":11: <SpeedActionDynamics>: 'value' is below 0");
+  expectText(errorIn(file("distance")), ":11: <SpeedActionDynamics>: 'value' is below 0");
+  const Scenario read = readScenario(file("rate"), false);
+  EXPECT_EQ(std::get<SpeedAction>(read.init.front().action.what).dynamics.value, 3.0);
+}
+
+TEST_F(ScenarioReader, AManeuverWithoutEventsIsRefused) {
+  const std::string file =
+      scenario("", "", "",
+               "<Story name=\"s\"><Act name=\"a\"><ManeuverGroup name=\"g\"><Actors/>\n"
+               "<Maneuver name=\"m\"/></ManeuverGroup></Act></Story>");
+  expectText(errorIn(file), ":12: <Maneuver>: expected at least one <Event>");
+}
+
 TEST_F(ScenarioReader, EntriesOfCatalogsTakeParameters) {
   write("catalogs/cars.xosc", std::string(R"(<OpenSCENARIO><Catalog name="cars">
 <Vehicle name="long"><ParameterDeclarations><ParameterDeclaration name="l" value="5"/></ParameterDeclarations>
