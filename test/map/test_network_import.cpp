@@ -144,6 +144,26 @@ TEST_F(NetworkImport, OnlyOpenDriveOfOursKeepsItsCoordinates) {
   EXPECT_EQ(offsetOf("ours.xodr"), Eigen::Vector2d(0.0, 0.0));
 }
 
+TEST_F(NetworkImport, LanesWithoutALimitGetThatOfTheirRoad) {
+  const auto limitOf = [&](const std::string& type) {
+    std::string text = kStraightRoad;
+    const ImportedNetwork network =
+        importNetwork(write("typed.xodr", text.insert(text.find("<planView>"), type)));
+    return RoadNetwork::fromText(network.text, "typed").lane(0).speed_limit;
+  };
+  EXPECT_NEAR(limitOf(R"(<type s="0" type="motorway"/>)"), 130.0 / 3.6, 0.01);
+  EXPECT_NEAR(limitOf(R"(<type s="0" type="rural"/>)"), 100.0 / 3.6, 0.01);
+  EXPECT_NEAR(limitOf(R"(<type s="0" type="town"/>)"), 50.0 / 3.6, 0.01);
+  EXPECT_NEAR(limitOf(R"(<type s="0" type="motorway"><speed max="80" unit="km/h"/></type>)"),
+              80.0 / 3.6, 0.01);
+}
+
+TEST_F(NetworkImport, SaysThatItGaveALimit) {
+  std::string text = kStraightRoad;
+  text.insert(text.find("<planView>"), R"(<type s="0" type="motorway"/>)");
+  EXPECT_EQ(importNetwork(write("typed.xodr", text)).changes.size(), 2u);
+}
+
 // netconvert splits names at commas, and puts variables of the environment into them.
 TEST_F(NetworkImport, ConvertsAFileWhateverItsName) {
   for (const std::string name : {"a,b.xodr", "${HOME}.xodr"}) {

@@ -14,6 +14,7 @@
 #include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "map/import/road_type_speeds.h"
 #include "map/import/vehicle_classes.h"
 
 namespace cdiff::map {
@@ -30,6 +31,9 @@ double netconvertLimit() {
   throw core::InputError(std::string(kNetconvertLimitVariable) + " is '" + given +
                          "'; expected seconds above 0");
 }
+
+/// How errors name a file that is converted.
+std::string subjectOf(const fs::path& source) { return "network '" + source.string() + "'"; }
 
 /// netconvert's opening comment holds the date and paths.
 std::string withoutGeneratedComment(std::string text) {
@@ -50,15 +54,15 @@ fs::path plainlyNamed(const fs::path& source, const core::ScratchFolder& scratch
   return plain;
 }
 
-/// Text of the SUMO network that netconvert makes of `source`; `format` is its option for the
-/// source, `types` the file of the type map that goes with it.
-std::string convert(const fs::path& source, const std::string& format, const std::string& types,
-                    const std::vector<std::string>& options) {
+/// Text of the SUMO network that netconvert makes of a file; `format` is its option for the file,
+/// `types` the file of the type map that goes with it. `subject` names in errors what is converted.
+std::string convert(const fs::path& file, const std::string& subject, const std::string& format,
+                    const std::string& types, const std::vector<std::string>& options) {
   const core::ScratchFolder scratch;
   const fs::path converted = scratch.path() / "converted.net.xml";
   const fs::path type_map = core::shareFolder() / "sumo" / "data" / "typemap" / types;
   std::vector<std::string> arguments = {format,
-                                        plainlyNamed(source, scratch).string(),
+                                        plainlyNamed(file, scratch).string(),
                                         "--type-files",
                                         type_map.string(),
                                         "--output-file",
@@ -68,7 +72,6 @@ std::string convert(const fs::path& source, const std::string& format, const std
                                         "--xml-validation",
                                         "never"};
   arguments.insert(arguments.end(), options.begin(), options.end());
-  const std::string subject = "network '" + source.string() + "'";
   runNetconvert(arguments, subject);
   if (!fs::exists(converted)) throw core::InputError(subject + ": netconvert wrote no network");
   return withoutGeneratedComment(core::readFile(converted, "converted network"));
@@ -84,7 +87,7 @@ bool isOurOpenDrive(const fs::path& source) {
 
 /// Part of the cache key: raise the number when the importer gives another result for the same
 /// input.
-constexpr const char* kImporterVersion = "e2e_cdiff network importer 1";
+constexpr const char* kImporterVersion = "e2e_cdiff network importer 2";
 
 std::vector<std::string> shippedNames(const fs::path& folder) {
   std::vector<std::string> names;
@@ -213,7 +216,13 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
 }
 
 std::string convertOpenDrive(const fs::path& source) {
-  return convert(source, "--opendrive-files", "opendriveNetconvert.typ.xml",
+  const core::ScratchFolder scratch;
+  fs::path file = source;
+  if (const auto completed = withSpeedsOfRoadTypes(core::readFile(source, "network"))) {
+    file = scratch.path() / "completed.xodr";
+    core::writeFileAtomically(file, *completed);
+  }
+  return convert(file, subjectOf(source), "--opendrive-files", "opendriveNetconvert.typ.xml",
                  {"--opendrive.curve-resolution", "1", "--opendrive.min-width", "0",
                   "--offset.disable-normalization", isOurOpenDrive(source) ? "true" : "false"});
 }
@@ -237,7 +246,7 @@ bool saysNoRoads(const std::string& text) {
 std::string convertOpenStreetMap(const fs::path& source) {
   try {
     std::string text =
-        convert(source, "--osm-files", "osmNetconvert.typ.xml",
+        convert(source, subjectOf(source), "--osm-files", "osmNetconvert.typ.xml",
                 {"--geometry.remove", "true", "--roundabouts.guess", "true", "--ramps.guess",
                  "true", "--junctions.join", "true", "--tls.discard-simple", "true", "--tls.join",
                  "true", "--remove-edges.isolated", "true", "--keep-edges.by-vclass", "passenger"});
@@ -277,6 +286,9 @@ ImportedNetwork importNetwork(const std::string& source) {
   network.source_sha256 = core::sha256(content);
   if (isOpenDrive(network.source.string(), content)) {
     importConverted({"OpenDRIVE", "<OpenDRIVE", convertOpenDrive}, content, network);
+    if (withSpeedsOfRoadTypes(content)) {
+      network.changes.emplace_back("gave lanes without a limit the one of their road's type");
+    }
   } else if (isOpenStreetMap(network.source.string(), content)) {
     importConverted({"OpenStreetMap", "<osm", convertOpenStreetMap}, content, network);
   } else {

@@ -28,7 +28,7 @@ inline constexpr const char* kOpenDriveVendor = "e2e_cdiff";
 // package's type maps. The text holds no date and no paths.
 
 /// netconvert shifts the network into positive coordinates, but not a file of kOpenDriveVendor.
-/// Throws InputError and Interrupted as runNetconvert does.
+/// Some roads get a limit (map/import/road_type_speeds.h). Throws as runNetconvert does.
 std::string convertOpenDrive(const std::filesystem::path& source);
 
 /// Only roads for cars, simplified: points that merely shape an edge do not split it, and junctions
