@@ -109,7 +109,7 @@ class CbvEdgeDistance final : public Metric {
     sink.set(kEdgeDistanceMean, measureOrReason(mean_.mean(), mean_.count(), kNoCbv));
     const std::pmr::vector<double>& sorted = distances_.sorted();
     if (sorted.empty()) return sink.set(kEdgeDistanceQuantile, absentMeasure(kNoCbv));
-    const double quantile = quantileOf(sorted, 0.05, QuantileRule::kLinear);
+    const double quantile = sampleQuantileOf(sorted, 0.05, QuantileRule::kLinear);
     sink.set(kEdgeDistanceQuantile, {quantile, sorted.size(), {}, {}});
   }
 

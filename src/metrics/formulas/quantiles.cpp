@@ -30,7 +30,7 @@ double quantileOf(const std::vector<double>& sorted, double share, QuantileRule 
   return quantile(sorted, share, rule);
 }
 
-double quantileOf(const std::pmr::vector<double>& sorted, double share, QuantileRule rule) {
+double sampleQuantileOf(const std::pmr::vector<double>& sorted, double share, QuantileRule rule) {
   return quantile(sorted, share, rule);
 }
 

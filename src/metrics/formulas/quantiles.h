@@ -18,7 +18,8 @@ enum class QuantileRule {
 
 /// The quantile at `share` in [0, 1] of values in ascending order, at least one.
 double quantileOf(const std::vector<double>& sorted, double share, QuantileRule rule);
-double quantileOf(const std::pmr::vector<double>& sorted, double share, QuantileRule rule);
+/// The same of values in a session's memory.
+double sampleQuantileOf(const std::pmr::vector<double>& sorted, double share, QuantileRule rule);
 
 /// Share of replicates that the expanded percentile interval of 95 % leaves out at each end
 /// (Hesterberg 2015, The American Statistician 69, 371-386, section 5.3):
