@@ -37,12 +37,15 @@ def search(cdiff, options, scenario, method, seed, results):
 
 
 def repeats(cdiff, results, case):
-    """Whether the scenario of a found case, run again, gives the same trace."""
+    """Whether the scenario of a found case, run again, gives the same trace. As in the search, a session that breaks is tried again."""
     again = results / "again" / case["id"]
-    subprocess.run([cdiff, "run", str(results / "found" / f"{case['id']}.yaml"), "--quiet", "--results", str(again)], check=False,
-                   capture_output=True)
-    summary = again / "summary.json"
-    return summary.exists() and json.loads(summary.read_text())["trace_sha256"] == case["trace_sha256"]
+    command = [cdiff, "run", str(results / "found" / f"{case['id']}.yaml"), "--quiet", "--overwrite", "--results", str(again)]
+    for _ in range(2):
+        ended = subprocess.run(command, capture_output=True, text=True, check=False)
+        if ended.returncode in (0, 1):
+            return json.loads((again / "summary.json").read_text())["trace_sha256"] == case["trace_sha256"]
+        print(f"{case['id']}: cdiff run ended with {ended.returncode}: {ended.stderr[-500:]}", file=sys.stderr, flush=True)
+    return False
 
 
 def mean(values):
