@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The commands `cdiff run` and `cdiff demo`: one session in this process, and its result folder.
+/// The commands `cdiff run` and `cdiff demo`: one session without nodes, and its result folder.
 #include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
 #include <future>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "core/clock.h"
+#include "core/forked_work.h"
 #include "core/program.h"
 #include "core/stage_times.h"
 #include "core/text.h"
@@ -245,6 +247,7 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   const std::string& bag_error = bag.finish();
   if (!bag_error.empty()) writer.recordFault({0, "recorder", bag_error});
   finishResult(writer, secondsSince(begin));
+  core::reachStage(core::WorkStage::kResultWritten);
   core::writeStageTimes(times.get());
   const int exit_code = video.finish(writer, writer.exitCode());
   printTable(writer, output);
@@ -282,13 +285,16 @@ int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
   const Clock::time_point begin = Clock::now();
   const auto level = std::async(std::launch::async, makeStartLevel, std::cref(setup));
   const auto claim = [&] {
-    return record::ResultFolder(output.folder, "cdiff run", output.overwrite);
+    auto folder =
+        std::make_unique<record::ResultFolder>(output.folder, "cdiff run", output.overwrite);
+    core::reachStage(core::WorkStage::kFolderTaken);
+    return folder;
   };
   std::unique_ptr<session::ClosedLoop> loop;
   try {
     loop = std::make_unique<session::ClosedLoop>(setup, std::move(*run.parts));
   } catch (const core::SimulatorError& error) {
-    const record::ResultFolder folder = claim();
+    const auto folder = claim();
     page::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
     recordFailedStart(writer, error.what());
     std::cerr << "cdiff: " << error.what() << "\n";
@@ -297,21 +303,24 @@ int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
     return writer.exitCode();
   }
   const std::unique_ptr<watch::LiveSession> live = makeLiveSession(setup, output, *loop);
-  const record::ResultFolder folder = claim();
+  const auto folder = claim();
   return drive(setup, output, *loop, live.get(), stop, begin);
 }
 
 /// Runs to the end and answers the exit code. A stop ends the session as interrupted. Throws
 /// InputError for a scenario that SUMO refuses, and for a folder that is in use or holds an earlier
 /// result (nothing in it is touched then); a simulator that cannot start or is lost gives a result
-/// folder with status error. The session runs in a process of its own, which may crash.
+/// folder with status error. With ROS the session runs in a process of its own, which may crash;
+/// only calls of what others have written must answer in time.
 int runSession(PreparedRun& run, const std::atomic<bool>& stop) {
   for (const std::string& warning : session::scenarioWarnings(run.setup))
     std::cerr << "cdiff: warning: " << warning << "\n";
 #ifdef E2E_CDIFF_WITH_ROS
   const RunOutput& output = run.output;
+  const double answer_timeout =
+      keepsTicks(run.setup) ? output.answer_timeout : std::numeric_limits<double>::infinity();
   return runWatched(
-      {run.setup, output.folder, output.overwrite, output.quiet, output.answer_timeout, stop},
+      {run.setup, output.folder, output.overwrite, output.quiet, answer_timeout, stop},
       [&] { return runHere(run, stop); });
 #else
   return runHere(run, stop);

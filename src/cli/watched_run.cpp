@@ -9,10 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/file.h"
 #include "core/folder_lock.h"
 #include "core/forked_work.h"
-#include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "metrics/metric_registry.h"
@@ -63,7 +61,10 @@ std::string faultText(const core::WorkEnd& end) {
   std::vector<std::string> files;
   for (const plugins::LoadedPlugin& plugin : plugins::loadPlugins())
     files.push_back("'" + plugin.library.file.string() + "'");
-  const std::string text = "the session ended before its result was written: " + end.how;
+  const std::string text =
+      (end.stage == core::WorkStage::kResultWritten ? "the program ended after"
+                                                    : "the session ended before") +
+      std::string(" its result was written: ") + end.how;
   return files.empty() ? text : text + "; it had loaded the plug-in " + core::joinText(files, ", ");
 }
 
@@ -73,17 +74,12 @@ std::string sourceName(const core::WorkEnd& end) {
   return end.kind.empty() ? "cdiff run" : end.kind + ":" + end.name;
 }
 
-/// Whether the copy has taken the folder: it writes the session first and the summary last.
-bool hasBegun(const std::filesystem::path& folder) {
-  return core::OutputFolder::lists(folder, "session.yaml") &&
-         !core::isFile(folder / "summary.json");
-}
-
-/// Locks the folder that the copy had, or takes it where the copy had not yet begun.
-void writeResult(const WatchedRun& run, const node_graph::AbandonedSession& session) {
+/// Locks the folder that the copy had taken, or takes it.
+void writeResult(const WatchedRun& run, const node_graph::AbandonedSession& session,
+                 core::WorkStage stage) {
   std::unique_ptr<core::FolderLock> lock;
   std::unique_ptr<record::ResultFolder> folder;
-  if (hasBegun(run.folder)) {
+  if (stage == core::WorkStage::kFolderTaken) {
     lock = std::make_unique<core::FolderLock>(run.folder, "cdiff run");
   } else {
     folder = std::make_unique<record::ResultFolder>(run.folder, "cdiff run", run.overwrite);
@@ -106,7 +102,7 @@ int runWatched(const WatchedRun& run, const std::function<int()>& session) {
   abandoned.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   std::cerr << "cdiff: " << abandoned.text << "\n";
   if (end.kind == "metric") metrics::leaveOutMetric(end.name, abandoned.text);
-  writeResult(run, abandoned);
+  if (end.stage != core::WorkStage::kResultWritten) writeResult(run, abandoned, end.stage);
   return end.interrupted ? core::ExitCode::kInterrupted : core::ExitCode::kRunTimeError;
 }
 

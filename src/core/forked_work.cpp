@@ -37,12 +37,15 @@ double secondsFrom(std::int64_t begin) { return 1e-9 * static_cast<double>(stead
 /// What both processes see: the copy writes, the other one reads.
 struct SharedState {
   std::atomic<bool> returned{false};
+  std::atomic<WorkStage> stage{WorkStage::kNothing};
   std::atomic<std::int64_t> since{0};  ///< of a limited call [ns of the steady clock]; 0: none
   std::array<char, 256> call{};        ///< "KIND:NAME"; empty: none
 };
 
 // Global, because a call has no other way to reach it; null where nobody waits for this process.
 SharedState* shared_state = nullptr;
+/// Whether this thread is the one that says what it calls.
+thread_local bool names_calls = false;
 
 void setCall(const std::string& call, std::int64_t since) {
   std::array<char, 256>& text = shared_state->call;
@@ -74,6 +77,7 @@ class SharedMemory {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(ExitCode::kRunTimeError);
   shared_state = &state;
+  names_calls = true;
   const int exit_code = body();
   std::cout << std::flush;
   std::fflush(nullptr);
@@ -95,6 +99,7 @@ class Waiting {
       std::this_thread::sleep_for(kLookPeriod);
     }
     WorkEnd end;
+    end.stage = state_.stage;
     if (state_.returned && WIFEXITED(status)) {
       end.exit_code = WEXITSTATUS(status);
       return end;
@@ -137,14 +142,18 @@ class Waiting {
 }  // namespace
 
 NamedCall::NamedCall(const char* kind, const std::string& name, Limit limit) {
-  if (shared_state == nullptr) return;
+  if (!names_calls) return;
   before_ = shared_state->call.data();
   since_before_ = shared_state->since;
   setCall(std::string(kind) + ":" + name, limit == Limit::kNone ? 0 : steadyNow());
 }
 
 NamedCall::~NamedCall() {
-  if (shared_state != nullptr) setCall(before_, since_before_);
+  if (names_calls) setCall(before_, since_before_);
+}
+
+void reachStage(WorkStage stage) {
+  if (shared_state != nullptr) shared_state->stage = stage;
 }
 
 WorkEnd runForked(const std::function<int()>& body, double call_limit,

@@ -14,7 +14,8 @@ namespace cdiff::core {
 // on and says what that code was.
 
 /// Says what of others is being called, as long as the object exists, to the process that waits
-/// for this one (runForked). Where none waits, nothing happens.
+/// for this one (runForked). Nothing happens where none waits, and in other threads than the one
+/// that began the work.
 class NamedCall {
  public:
   enum class Limit { kNone, kOfTheWork };
@@ -30,8 +31,15 @@ class NamedCall {
   std::int64_t since_before_ = 0;
 };
 
+/// How far work has come that leaves a result in a folder.
+enum class WorkStage { kNothing, kFolderTaken, kResultWritten };
+
+/// Says that a stage is reached, to the process that waits for this one.
+void reachStage(WorkStage stage);
+
 /// How work in a copy of this process ended.
 struct WorkEnd {
+  WorkStage stage = WorkStage::kNothing;  ///< the last one that was reached
   std::optional<int> exit_code;  ///< what the work returned; absent where it did not return
   std::string how;           ///< it did not: "signal 11 (Segmentation fault)", "exit code 0", ...
   std::string kind;          ///< of the call that was going on then; empty: none

@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReserve = ".reserve";
+/// Trace of a session that ended with its process and kept nothing else.
+constexpr const char* kCutOffTrace = "trace_cut_off.csv";
 constexpr const char* kBag = "session.bag";
 
 /// Goes on where the disk is full: the writer has noted it, and the result will say so.
@@ -238,18 +240,33 @@ msgs::TrafficSnapshot endedBy(msgs::TrafficSnapshot snapshot, traffic::SessionSt
 
 }  // namespace
 
+namespace {
+
+/// Keeps the trace of a session whose ticks are nowhere else; whether there is one.
+bool keepCutOffTrace(core::OutputFolder& folder) {
+  const fs::path trace = folder.path() / "trace.csv.part";
+  if (!core::isFile(trace)) return false;
+  fs::rename(trace, folder.claim(kCutOffTrace));
+  return true;
+}
+
+}  // namespace
+
 std::string writeAbandonedResult(const session::SessionSetup& setup, const fs::path& results,
                                  const AbandonedSession& session) {
   core::OutputFolder folder(results);
-  folder.removeUnfinished();
   const bool reserved = core::OutputFolder::lists(results, kReserve);
+  const bool has_trace = !reserved && keepCutOffTrace(folder);
+  folder.removeUnfinished();
   const auto bag = reserved ? reservedBag(results) : std::nullopt;
   const auto recorded = bag ? readableSession(*bag) : nullptr;
   const std::string simulator = recorded ? recorded->info().simulator_version : "unknown";
   page::ResultWriter writer(setup, {"cdiff run", simulator, true}, results);
   AbandonedTicks ticks(writer);
   if (recorded) showTicks(*recorded, {&ticks});
-  ticks.end(session);
+  AbandonedSession end = session;
+  if (has_trace) end.text += std::string("; ") + kCutOffTrace + " has its ticks until then";
+  ticks.end(end);
   writer.finish(session.wall_seconds);
   removeReserve(folder);
   return writer.table();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/cdiff_command.h"
+#include "core/text.h"
 
 namespace cdiff::cli {
 namespace {
@@ -17,17 +18,15 @@ class FalseSumo : public test::CdiffCommand {
   FalseSumo() : path_before_(std::getenv("PATH")) {}
   ~FalseSumo() override { ::setenv("PATH", path_before_.c_str(), 1); }
 
-  /// A program sumo that takes one client and sends `answer`, a Python expression, to its request.
-  void install(const std::string& answer) const {
+  /// A program sumo that takes one client, whose commands in Python then are `body`.
+  void install(const std::string& body) const {
     const std::string program = path("bin") + "/sumo";
     fs::create_directory(path("bin"));
     core::writeFileAtomically(program, R"(#!/usr/bin/python3
-import socket, sys, time
-port = int(sys.argv[sys.argv.index("--remote-port") + 1])
-server = socket.create_server(("127.0.0.1", port))
-client, _ = server.accept()
-client.recv(4096)
-client.sendall()" + answer + R"()
+import socket, subprocess, sys, time
+place = sys.argv.index("--remote-port") + 1
+server = socket.create_server(("127.0.0.1", int(sys.argv[place])))
+)" + body + R"(
 time.sleep(60)
 )");
     fs::permissions(program, fs::perms::owner_all);
@@ -48,14 +47,52 @@ time.sleep(60)
   std::string path_before_;
 };
 
+const std::string kFirstRequest = R"(client, _ = server.accept()
+client.recv(4096)
+)";
+
 TEST_F(FalseSumo, AnAnswerWithoutLengthIsAnErrorOfTheSimulator) {
-  install("bytes(4)");
+  install(kFirstRequest + "client.sendall(bytes(4))");
   expectErrorOfTheSimulator();
 }
 
 TEST_F(FalseSumo, AnAnswerThatIsNoneIsAnErrorOfTheSimulator) {
-  install("bytes([0, 0, 0, 64]) + bytes([255]) * 60");
+  install(kFirstRequest + "client.sendall(bytes([0, 0, 0, 64]) + bytes([255]) * 60)");
   expectErrorOfTheSimulator();
+}
+
+/// Passes the true SUMO's answers on until simulated seconds have passed.
+const std::string kPassesOn = R"(
+with socket.create_server(("127.0.0.1", 0)) as probe:
+    port = probe.getsockname()[1]
+sumo = subprocess.Popen(["/usr/bin/sumo", *sys.argv[1:place], str(port), *sys.argv[place + 1:]])
+while True:
+    try:
+        real = socket.create_connection(("127.0.0.1", port))
+        break
+    except ConnectionRefusedError:
+        time.sleep(0.02)
+client, _ = server.accept()
+
+def whole(source):
+    text = b""
+    while len(text) < 4 or len(text) < int.from_bytes(text[:4], "big"):
+        text += source.recv(65536) or sys.exit(0)
+    return text
+
+for _ in range(1200):
+    real.sendall(whole(client))
+    client.sendall(whole(real))
+whole(client)
+client.sendall(bytes(4))
+sumo.kill()
+)";
+
+TEST_F(FalseSumo, AnAnswerWithoutLengthLaterLeavesTheTraceUntilThen) {
+  install(kPassesOn);
+  expectErrorOfTheSimulator();
+  const auto trace = core::readFile(path("results") + "/trace_cut_off.csv", "trace");
+  EXPECT_GT(core::splitText(trace, '\n').size(), 10U);
 }
 
 }  // namespace
