@@ -154,6 +154,8 @@ TEST_F(NetworkImport, LanesWithoutALimitGetThatOfTheirRoad) {
   EXPECT_NEAR(limitOf(R"(<type s="0" type="motorway"/>)"), 130.0 / 3.6, 0.01);
   EXPECT_NEAR(limitOf(R"(<type s="0" type="rural"/>)"), 100.0 / 3.6, 0.01);
   EXPECT_NEAR(limitOf(R"(<type s="0" type="town"/>)"), 50.0 / 3.6, 0.01);
+  EXPECT_NEAR(limitOf(R"(<type s="0" type="town"/><type s="90" type="motorway"/>)"), 50.0 / 3.6,
+              0.01);
   EXPECT_NEAR(limitOf(R"(<type s="0" type="motorway"><speed max="80" unit="km/h"/></type>)"),
               80.0 / 3.6, 0.01);
 }

@@ -87,7 +87,7 @@ bool isOurOpenDrive(const fs::path& source) {
 
 /// Part of the cache key: raise the number when the importer gives another result for the same
 /// input.
-constexpr const char* kImporterVersion = "e2e_cdiff network importer 2";
+constexpr const char* kImporterVersion = "e2e_cdiff network importer 3";
 
 std::vector<std::string> shippedNames(const fs::path& folder) {
   std::vector<std::string> names;

@@ -5,17 +5,18 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "core/text.h"
+
 namespace cdiff::map {
 namespace {
 
-/// A road's limit as OpenDRIVE writes it; an empty `max` stands for none.
+/// A limit as OpenDRIVE writes it; an empty `max` stands for none.
 struct Limit {
   std::string max;
   std::string unit = "m/s";
 };
 
-/// The limit of a road's first type: the one that it gives, else the usual one of a motorway or a
-/// rural road.
+/// The limit that a road's type gives, else the usual one of a motorway or a rural road.
 Limit limitOf(pugi::xml_node type) {
   const pugi::xml_node speed = type.child("speed");
   const std::string kind = type.attribute("type").value();
@@ -25,27 +26,39 @@ Limit limitOf(pugi::xml_node type) {
   return {};
 }
 
-/// Whether it is a number: OpenDRIVE also knows the words "no limit" and "undefined".
-bool isGiven(const Limit& limit) {
-  return !limit.max.empty() && limit.max.find_first_not_of("0123456789.") == std::string::npos;
+/// The type of a road where a section begins [m]: the last one from there or before.
+pugi::xml_node typeAt(pugi::xml_node road, double begin) {
+  pugi::xml_node found;
+  for (const pugi::xml_node type : road.children("type")) {
+    if (!found || type.attribute("s").as_double() <= begin) found = type;
+  }
+  return found;
 }
 
-/// Gives the lanes of a road a limit that have none; whether there were such lanes.
+/// Whether it is a speed: OpenDRIVE also knows the words "no limit" and "undefined".
+bool isGiven(const Limit& limit) { return core::parseNumber(limit.max).value_or(0.0) > 0.0; }
+
+/// Gives the lanes of a section a limit that have none; whether there were such lanes.
+bool addLimits(pugi::xml_node section, const Limit& limit) {
+  bool added = false;
+  for (const char* const side : {"left", "right"}) {
+    for (pugi::xml_node lane : section.child(side).children("lane")) {
+      if (lane.child("speed")) continue;
+      pugi::xml_node speed = lane.append_child("speed");
+      speed.append_attribute("sOffset") = 0;
+      speed.append_attribute("max") = limit.max.c_str();
+      speed.append_attribute("unit") = limit.unit.c_str();
+      added = true;
+    }
+  }
+  return added;
+}
+
 bool addLimits(pugi::xml_node road) {
-  const Limit limit = limitOf(road.child("type"));
-  if (!isGiven(limit)) return false;
   bool added = false;
   for (const pugi::xml_node section : road.child("lanes").children("laneSection")) {
-    for (const char* const side : {"left", "right"}) {
-      for (pugi::xml_node lane : section.child(side).children("lane")) {
-        if (lane.child("speed")) continue;
-        pugi::xml_node speed = lane.append_child("speed");
-        speed.append_attribute("sOffset") = 0;
-        speed.append_attribute("max") = limit.max.c_str();
-        speed.append_attribute("unit") = limit.unit.c_str();
-        added = true;
-      }
-    }
+    const Limit limit = limitOf(typeAt(road, section.attribute("s").as_double()));
+    if (isGiven(limit)) added = addLimits(section, limit) || added;
   }
   return added;
 }

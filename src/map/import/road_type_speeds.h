@@ -7,9 +7,9 @@
 
 namespace cdiff::map {
 
-/// The OpenDRIVE text in which each lane without a limit has that of its road's first type, which
-/// netconvert does not read. A motorway without a limit has 130 km/h there, a rural road 100 km/h.
-/// nullopt when the text already is so, or is no XML.
+/// The OpenDRIVE text in which each lane without a limit has that of its road's type where its
+/// section begins, which netconvert does not read. A motorway without a limit has 130 km/h there, a
+/// rural road 100 km/h. nullopt when the text already is so, or is no XML.
 std::optional<std::string> withSpeedsOfRoadTypes(const std::string& opendrive);
 
 }  // namespace cdiff::map
