@@ -89,8 +89,8 @@ void submitJobs(const evaluation::Executor& executor, const fs::path& results,
       ids.push_back(evaluation::submitJob(arguments));
   } catch (const core::InputError& error) {
     if (!ids.empty()) cancelAfter(batch.name, error);
-    throw core::InputError(std::string(error.what()) +
-                           "; nothing is queued: go on with --resume when that is mended");
+    throw core::InputError(std::string(error.what()) + "; nothing is queued: go on " +
+                           arguments.again + " when that is mended");
   }
   evaluation::writeJobName(results, batch.name, ids);
   std::cerr << "submitted " << core::joinText(ids, ", ") << " as " << batch.name << "\n"
@@ -117,7 +117,7 @@ bool followJobs(const std::vector<std::string>& ids, const fs::path& results,
   if (!open.empty()) {
     std::cerr << open.size() << (open.size() == 1 ? " run was" : " runs were")
               << " not run: their jobs ended before, see "
-              << evaluation::slurmFolder(results).string() << "; go on with --resume\n";
+              << evaluation::slurmFolder(results).string() << "; go on " << arguments.again << "\n";
   }
   return true;
 }

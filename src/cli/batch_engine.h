@@ -21,10 +21,11 @@ struct EngineArguments {
   std::string command = "cdiff evaluate";  ///< that is run
   /// How its user goes on with jobs that outlive it; " --results FOLDER" follows.
   std::string go_on = "to follow them again: cdiff evaluate --attach";
-  std::string engine = "local";    ///< local | slurm | print
-  std::vector<std::string> slurm;  ///< texts of --slurm
-  int jobs = 1;                    ///< sessions at a time; on a cluster in each task
-  bool fresh = false;              ///< the program starts afresh for each session
+  std::string again = "with --resume";  ///< how its user runs what is left
+  std::string engine = "local";         ///< local | slurm | print
+  std::vector<std::string> slurm;       ///< texts of --slurm
+  int jobs = 1;                         ///< sessions at a time; on a cluster in each task
+  bool fresh = false;                   ///< the program starts afresh for each session
 
   bool isLocal() const { return engine == "local"; }
   bool prints() const { return engine == "print"; }

@@ -46,9 +46,11 @@ struct CollectArguments {
 std::vector<std::string> wordsOf(const CollectRequest& request) {
   const std::string scenario =
       core::isFile(request.scenario) ? fs::absolute(request.scenario).string() : request.scenario;
-  std::vector<std::string> words = {
-      kSessionCommand, scenario,    "--seed",     std::to_string(request.seed),
-      "--results",     "{results}", "--duration", core::formatNumber(request.duration)};
+  std::vector<std::string> words = {kSessionCommand, scenario,
+                                    "--seed",        std::to_string(request.seed),
+                                    "--results",     "{results}",
+                                    "--duration",    core::formatNumber(request.duration),
+                                    "--planned",     "{run}/scenario.yaml"};
   if (request.keep_bag) words.push_back("--keep-bags");
   if (!request.images) words.push_back("--no-images");
   if (request.scenes) words.push_back("--scenes");
@@ -266,6 +268,14 @@ int collect(const CollectArguments& arguments) {
   return conclude(arguments, sessions, stop ? ExitCode::kInterrupted : exitCode(records));
 }
 
+/// Throws InputError where the session is not the one whose resolved scenario `planned` holds.
+void requirePlanned(const CollectRequest& request, const std::string& planned) {
+  const auto settings = collection::resolveCollection(request);
+  if (core::dumpOptions(settings.scenario) == core::readFile(planned, "scenario")) return;
+  throw core::InputError("scenario '" + request.scenario + "' has changed since '" + planned +
+                         "' was planned; collect again");
+}
+
 void addCommonOptions(CLI::App& command, CollectRequest& request) {
   command.add_option("--results", request.results, "Folder of the data set")->required();
   command.add_option("--duration", request.duration, "Longest session [s]")
@@ -304,6 +314,7 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<CollectArguments>();
   arguments->engine.command = "cdiff collect";
   arguments->engine.go_on = "to go on once they have ended: the same command";
+  arguments->engine.again = "with the same command";
   arguments->engine.fresh = true;
   CLI::App* command = program.add_subcommand(
       "collect", "Drive and record many vehicles, and make training samples of it");
@@ -330,8 +341,11 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
   session->group("");  // not shown: collect starts it
   session->add_option("scenario", request->scenario)->required();
   session->add_option("--seed", request->seed)->required();
+  auto planned = std::make_shared<std::string>();
+  session->add_option("--planned", *planned)->required();
   addCommonOptions(*session, *request);
-  session->callback([request, &exit_code] {
+  session->callback([request, planned, &exit_code] {
+    requirePlanned(*request, *planned);
     node_graph::collectSession(*request, core::catchStopSignals());
     exit_code = ExitCode::kPassed;
   });

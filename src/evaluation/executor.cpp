@@ -51,8 +51,8 @@ void Executor::refuseRenamed() const {
     if (planned == ids.end() || planned_ids.count(record->id) != 0) continue;
     throw core::InputError("'" + entry.path().string() + "' holds the run that is called '" +
                            planned->second +
-                           "' by this version; begin the batch again (--overwrite), or give "
-                           "another --results");
+                           "' now; give another --results, or begin again where the command has "
+                           "--overwrite");
   }
 }
 

@@ -143,8 +143,10 @@ RunRecord fromJson(const Json& json) {
   }
   record.scenario_sha256 = json.at("scenario_sha256");
   if (json.contains("inputs")) record.inputs = json.at("inputs").get<InputHashes>();
-  if (json.contains("command"))
+  if (json.contains("command")) {
+    json.at("command").at("words").at(0);  // none is damage
     record.command = {json.at("command").at("words"), json.at("command").at("result")};
+  }
   record.status = json.at("status");
   record.cause = json.at("cause");
   record.exit_code = json.at("exit_code");

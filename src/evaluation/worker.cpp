@@ -81,7 +81,8 @@ void describeEnd(RunRecord& record, const core::ProcessEnd& end, const fs::path&
   }
   const SummaryFacts facts = record.command.isSession() ? factsIn(folder) : SummaryFacts();
   if (record.exit_code == ExitCode::kInterrupted || end.interrupted) record.status = "interrupted";
-  if (record.exit_code != ExitCode::kPassed && record.exit_code != ExitCode::kVerdictFailed) {
+  const bool judged = record.command.isSession() && record.exit_code == ExitCode::kVerdictFailed;
+  if (record.exit_code != ExitCode::kPassed && !judged) {
     if (record.failed()) record.cause = causeOf(record.exit_code, facts.fault, folder / "log.txt");
     return;
   }

@@ -205,7 +205,7 @@ class ResultWriter::Record {
   core::PendingFile summary_;
   core::PendingFile junit_;
   std::unique_ptr<record::TraceWriter> trace_;  ///< null once it could not be written
-  core::DiskMemory memory_;                     ///< of all that grows with the session
+  core::DiskMemory memory_;  ///< of most that grows with the session; not of perceptions
   metrics::SessionMetrics metrics_;
   metrics::TickMeasures tick_measures_;
   record::Timeline timeline_;

@@ -103,7 +103,8 @@ std::vector<MatchedJob> planMatched(const std::vector<evaluation::PlannedRun>& r
     MatchedJob job{driverOf(run), planner, runOf(run, planner, options)};
     if (with_sumo.emplace(sessionOf(job), true).second) {
       jobs.push_back({kSumoRow, "", runOf(run, kSumo, options)});
-      jobs.back().run.id += "__sumo";
+      jobs.back().run.id =
+          core::fileName(run.factors.at("scenario") + "__seed" + run.factors.at("seed") + "__sumo");
     }
     jobs.push_back(std::move(job));
   }

@@ -21,10 +21,12 @@ constexpr std::size_t kMegabyte = std::size_t{1} << 20;
 std::size_t fileBytesInRam() {
   std::ifstream status("/proc/self/status");
   std::string line;
+  std::size_t bytes = 0;
   while (std::getline(status, line)) {
-    if (line.rfind("RssFile:", 0) == 0) return 1024 * std::stoul(line.substr(8));
+    for (const char* name : {"RssFile:", "RssShmem:"})  // the latter where the disk is RAM
+      if (line.rfind(name, 0) == 0) bytes += 1024 * std::stoul(line.substr(line.find(':') + 1));
   }
-  return 0;
+  return bytes;
 }
 
 auto entriesOf(const std::filesystem::path& folder) {

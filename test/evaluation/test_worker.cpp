@@ -155,9 +155,9 @@ TEST_F(WorkerTest, WritesNoRecordOfARunThatWasTakenFromIt) {
 
 TEST_F(WorkerTest, RunsOtherCommandsAndAsksForTheirFileAlone) {
   options_.program = "/bin/sh";
-  plan_ = test::fakePlan({"leaves", "leaves_none", "fails", "elsewhere"});
+  plan_ = test::fakePlan({"leaves", "leaves_none", "fails", "elsewhere", "ends_with_1"});
   const std::string scripts[] = {"echo 1 > $0/score.json", "true", "echo no >&2; exit 3",
-                                 "echo 1 > $1/shard"};
+                                 "echo 1 > $1/shard", "exit 1"};
   for (std::size_t i = 0; i < plan_.size(); ++i)
     plan_[i].command = {{"-c", scripts[i], "{run}", "{results}"}, i < 3 ? "score.json" : ""};
   ExecutorOptions options;
@@ -169,6 +169,7 @@ TEST_F(WorkerTest, RunsOtherCommandsAndAsksForTheirFileAlone) {
   EXPECT_EQ(records[2].exit_code, 3);
   EXPECT_EQ(records[2].cause, "exit code 3: no");
   EXPECT_EQ(records[3].status, "completed");
+  EXPECT_EQ(records[4].status, "error") << "1 is a verdict of sessions alone";
   EXPECT_TRUE(fs::exists(options_.results / "shard"));
   EXPECT_TRUE(record("leaves0").command == plan_[0].command) << "as a worker elsewhere reads it";
   EXPECT_THROW(readRecords(options_.results), core::InputError) << "none is of a session";

@@ -42,7 +42,7 @@ TEST(MatchedPlan, AddsSumoOnceForEachSession) {
   EXPECT_EQ(jobs[0].driver, "SUMO background");
   EXPECT_TRUE(jobs[0].planner.empty());
   EXPECT_EQ(jobs[1].driver, "PDM-Lite, naturalistic");
-  EXPECT_EQ(jobs[3].run.id, "b__diffusionpaper__sumo");
+  EXPECT_EQ(jobs[3].run.id, "b__seed1__sumo");
   EXPECT_EQ(jobs[4].driver, "paper");
   auto other = run("c", "diffusion");
   other.factors["ego_planner"] = "diffusion";
