@@ -148,8 +148,8 @@ exit 1
             (root / "run").mkdir()
 
             def compared():
-                return subprocess.run([SOURCE / "scripts/openscenario_accuracy", "--cdiff", root / "cdiff", root / "run"], timeout=60,
-                                      capture_output=True, text=True, check=False)
+                return subprocess.run([SOURCE / "scripts/openscenario_accuracy", "--cdiff", root / "cdiff", "--pictures", root / "pictures", root / "run"],
+                                      timeout=60, capture_output=True, text=True, check=False)
 
             self.assertEqual(compared().returncode, 3)
             rows = ["0,ego,10,0,0", "1,ego,10,0,0", "2,ego,10,0,0", "0,a,4,0,0", "1,a,5,0,0", "2,a,5.7,0,0", "1,b,0,0,0", "1,d,10,3,0", "2,d,10,1,0"]
@@ -161,6 +161,8 @@ exit 1
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("| run | 4 | 0.500 | 0.05 | 1 of 3 | 1 |", done.stdout)
             self.assertIn("Largest: 0.500 m and 0.05 s in 1 sessions\nContacts again: 1 of 3; with vehicles that are gone: 1", done.stdout)
+            picture = (root / "pictures/run.svg").read_text()
+            self.assertEqual(picture.count("<polygon"), 5, picture)  # ego, "a", "d"; "a" and "d" driven again, without the ego
 
     def test_benchmark_builds_itself_only(self):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
