@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "cbv/cbv_selector.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -25,16 +26,10 @@ std::vector<std::uint8_t> encoded(const traffic::CameraImage& image, const char*
                            std::to_string(image.height) + " pixels has " +
                            std::to_string(image.rgb.size()) + " bytes");
   }
-  cv::Mat blue_first(image.height, image.width, CV_8UC3);
-  const std::uint8_t* from = image.rgb.data();
-  const std::uint8_t* const end = from + image.rgb.size();
-  for (std::uint8_t* to = blue_first.data; from != end; from += 3, to += 3) {
-    const std::uint8_t red = from[0];
-    const std::uint8_t green = from[1];
-    to[0] = from[2];
-    to[1] = green;
-    to[2] = red;
-  }
+  const cv::Mat red_first(image.height, image.width, CV_8UC3,
+                          const_cast<std::uint8_t*>(image.rgb.data()));  // only read
+  cv::Mat blue_first;
+  cv::cvtColor(red_first, blue_first, cv::COLOR_RGB2BGR);
   std::vector<std::uint8_t> bytes;
   cv::imencode(format, blue_first, bytes, settings);
   return bytes;
