@@ -178,8 +178,8 @@ CbvRecord newRecord(const cbv::CbvAssignment& assignment, std::pmr::memory_resou
           assignment.selected_tick,
           assignment.interaction_score,
           assignment.conflict_point,
-          0,
-          std::nullopt,
+          0,             // decisions_driven
+          std::nullopt,  // released_tick
           kSessionEnd,
           route.length(),
           {points.begin(), points.end(), memory}};

@@ -157,7 +157,7 @@ struct Approach {
   double gap = 0.0;                   ///< between the boxes of ego and CBV [m]
   double center_distance = 0.0;       ///< between their centers [m]
   traffic::TrafficSnapshot snapshot;  ///< without vehicles where a frame is kept alone
-  LoneFrame frame;                    ///< there
+  LoneFrame frame;                    ///< what is kept then; empty beside a whole snapshot
   traffic::CameraImage
       cbv_image;  ///< image of the latest decision; empty when its planner does not see
   traffic::CameraImage ego_image;  ///< likewise of the ego
