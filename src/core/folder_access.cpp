@@ -4,9 +4,12 @@
 
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <utility>
 
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -14,6 +17,10 @@
 namespace cdiff::core {
 
 namespace fs = std::filesystem;
+
+namespace {
+constexpr const char* kDraftStem = ".cdiff_draft.";
+}  // namespace
 
 void failOn(const fs::path& path, const std::string& what, int error) {
   throw InputError("cannot " + what + " '" + path.string() + "': " + writeErrorText(error));
@@ -34,6 +41,25 @@ int placeUnlessThere(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
   return ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno;  // a file system that cannot do that
+}
+
+Draft makeDraft(const fs::path& folder) {
+  std::string name = (folder / kDraftStem).string() + "XXXXXX";
+  FileDescriptor descriptor(::mkostemp(name.data(), O_CLOEXEC));
+  // Until it is locked another process may take it for left behind: its writer finds it gone then.
+  if (descriptor && ::flock(descriptor.get(), LOCK_EX | LOCK_NB) != 0) descriptor.close();
+  return {name, std::move(descriptor)};
+}
+
+void removeLeftDrafts(const fs::path& folder) {
+  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (entry.path().filename().string().rfind(kDraftStem, 0) != 0) continue;
+    if (entry.is_symlink(none) || !entry.is_regular_file(none)) continue;
+    const FileDescriptor draft(::open(entry.path().c_str(), kFlags));
+    if (draft && ::flock(draft.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+  }
 }
 
 fs::path withoutSlash(const fs::path& folder) {

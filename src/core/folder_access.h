@@ -25,6 +25,19 @@ bool isSameFile(int descriptor, int directory, const char* name);
 /// Gives a file another name unless something has it. Answers 0 or why not.
 int placeUnlessThere(const std::filesystem::path& from, const std::filesystem::path& to);
 
+/// A file that gets its name when it is whole.
+struct Draft {
+  std::filesystem::path path;
+  FileDescriptor descriptor;
+};
+
+/// Makes an empty one in a folder and locks it, so that its writer is known to live. Its descriptor
+/// is closed where that is refused (errno).
+Draft makeDraft(const std::filesystem::path& folder);
+
+/// Removes the drafts of a folder whose writers are gone.
+void removeLeftDrafts(const std::filesystem::path& folder);
+
 /// The path without a slash at its end, which would follow a link.
 std::filesystem::path withoutSlash(const std::filesystem::path& folder);
 

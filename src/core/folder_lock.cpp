@@ -109,18 +109,20 @@ bool FolderLock::tryLock() {
 /// Places a lock that is locked and signed before anybody can see it, where there is none.
 bool FolderLock::placeSigned() {
   const fs::path file = folder_ / kFile;
-  std::string draft = file.string() + ".XXXXXX";
-  FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
+  Draft draft = makeDraft(folder_);
+  FileDescriptor descriptor = std::move(draft.descriptor);
   if (!descriptor) failOn(file, "write", errno);
   const std::string text = holderSignature(program_);
   const bool written =
-      ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor.get(), 0644) == 0 &&
+      ::fchmod(descriptor.get(), 0644) == 0 &&
       ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
-  const int reason = written ? placeUnlessThere(draft, file) : errno;
+  const int reason = written ? placeUnlessThere(draft.path, file) : errno;
   const bool placed = isSameFile(descriptor.get(), directory_.get(), kFile);
   if (placed) descriptor_ = std::move(descriptor);
-  ::unlink(draft.c_str());
-  if (!placed && reason != EEXIST) failOn(file, "write", reason);
+  ::unlink(draft.path.c_str());
+  // Taken, or the draft or the folder was removed just now.
+  const bool again = reason == EEXIST || reason == ENOENT;
+  if (!placed && !again) failOn(file, "write", reason);
   return placed;
 }
 

@@ -82,7 +82,7 @@ std::map<std::string, LeaseFolder::Generations> LeaseFolder::list() const {
     const std::string name = entry.path().filename().string();
     const std::size_t dot = name.rfind('.');
     const std::string digits = dot == std::string::npos ? "" : name.substr(dot + 1);
-    if (dot == 0 || digits.empty() || digits.size() > 9 ||
+    if (name.front() == '.' || digits.empty() || digits.size() > 9 ||
         digits.find_first_not_of("0123456789") != std::string::npos)
       continue;
     found[name.substr(0, dot)][std::stoul(digits)] = entry.path();
@@ -104,16 +104,16 @@ bool LeaseFolder::isLeftBehind(const fs::path& file) {
 /// Gives a file that is signed and locked already its name; 0, or the reason why it has not got it.
 int LeaseFolder::placeOnce(const fs::path& file, FileDescriptor& descriptor) const {
   makeFolder(folder_);
-  std::string draft = (folder_ / ".draft.XXXXXX").string();
-  descriptor = FileDescriptor(::mkostemp(draft.data(), O_CLOEXEC));
+  Draft draft = makeDraft(folder_);
+  descriptor = std::move(draft.descriptor);
   if (!descriptor) return errno;
   const std::string text =
       holderSignature(terms_.program) + "boot: " + bootId() + "\nbeat: " + beatText(0);
   const bool written =
-      ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor.get(), 0644) == 0 &&
+      ::fchmod(descriptor.get(), 0644) == 0 &&
       ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
-  const int reason = written ? placeUnlessThere(draft, file) : errno;
-  ::unlink(draft.c_str());
+  const int reason = written ? placeUnlessThere(draft.path, file) : errno;
+  ::unlink(draft.path.c_str());
   return reason;
 }
 
@@ -176,13 +176,7 @@ void LeaseFolder::removeLeftBehind() {
       if (isLeftBehind(file)) ::unlink(file.c_str());
     }
   }
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder_, none)) {
-    const bool draft = entry.path().filename().string().rfind(".draft.", 0) == 0;
-    const FileDescriptor descriptor = draft ? openLease(entry.path()) : FileDescriptor();
-    if (descriptor && ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0)
-      ::unlink(entry.path().c_str());
-  }
+  removeLeftDrafts(folder_);
   ::rmdir(folder_.c_str());  // refused where a lease is in it
 }
 

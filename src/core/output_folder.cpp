@@ -115,28 +115,27 @@ class Record {
   }
 
   /// A new file beside the record that holds these names.
-  fs::path draftOf(const std::set<std::string>& names) const {
+  Draft draftOf(const std::set<std::string>& names) const {
     const fs::path file = folder_ / OutputFolder::kRecord;
     std::string text = std::string(kRecordHead) + "\n";
     for (const std::string& name : names) text += name + "\n";
-    std::string draft = file.string() + ".XXXXXX";
-    const FileDescriptor descriptor(::mkostemp(draft.data(), O_CLOEXEC));
-    if (!descriptor) failOnRecord(folder_, errno);
+    Draft draft = makeDraft(folder_);
+    if (!draft.descriptor) failOnRecord(folder_, errno);
     errno = ENOSPC;  // where less than all is written
-    const bool written = ::pwrite(descriptor.get(), text.data(), text.size(), 0) ==
+    const bool written = ::pwrite(draft.descriptor.get(), text.data(), text.size(), 0) ==
                              static_cast<ssize_t>(text.size()) &&
-                         ::fchmod(descriptor.get(), 0644) == 0;
+                         ::fchmod(draft.descriptor.get(), 0644) == 0;
     const int reason = errno;
     if (written) return draft;
-    ::unlink(draft.c_str());
+    ::unlink(draft.path.c_str());
     failOn(file, "write", reason);
   }
 
   /// Makes an empty one that is whole before anybody can see it.
   void make() const {
-    const fs::path draft = draftOf({});
-    const int reason = placeUnlessThere(draft, folder_ / OutputFolder::kRecord);
-    ::unlink(draft.c_str());
+    const Draft draft = draftOf({});
+    const int reason = placeUnlessThere(draft.path, folder_ / OutputFolder::kRecord);
+    ::unlink(draft.path.c_str());
     if (reason != 0 && reason != EEXIST) failOnRecord(folder_, reason);
   }
 
@@ -174,10 +173,10 @@ class Record {
   /// Replaces the record by a new file: a backup may hold the old one under another name.
   void store() const {
     const fs::path file = folder_ / OutputFolder::kRecord;
-    const fs::path draft = draftOf(names_);
-    if (::rename(draft.c_str(), file.c_str()) == 0) return;
+    const Draft draft = draftOf(names_);
+    if (::rename(draft.path.c_str(), file.c_str()) == 0) return;
     const int reason = errno;
-    ::unlink(draft.c_str());
+    ::unlink(draft.path.c_str());
     failOnRecord(folder_, reason);
   }
 
@@ -317,6 +316,7 @@ void OutputFolder::removeUnfinished() {
     if (endsWith(name, kPart)) unfinished.insert(name);
   }
   remove(unfinished);
+  removeLeftDrafts(path());
 }
 
 void OutputFolder::requireInPlace() const {

@@ -182,7 +182,7 @@ TEST_F(LeaseTest, SaysThatItsFolderCannotBeWritten) {
 
 TEST_F(LeaseTest, LeftBehindIsRemovedAndHeldStays) {
   writeForeign("dead.1", "000000000000");
-  std::ofstream(file(".draft.abcdef")) << "half";
+  std::ofstream(file(".cdiff_draft.abcdef")) << "half";
   LeaseFolder mine = leases(60.0, 0.01);
   auto lease = mine.claim("held");
   mine.removeLeftBehind();  // sees the foreign one for the first time

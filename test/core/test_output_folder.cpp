@@ -22,6 +22,7 @@
 #include <thread>
 
 #include "core/file.h"
+#include "core/folder_access.h"
 #include "core/output_folder.h"
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -432,6 +433,19 @@ TEST_F(OutputFolderTest, HalvesOfKilledWritersAreRemovedByTheNext) {
   OutputFolder output(folder());
   output.removeUnfinished();
   EXPECT_EQ(namesOf(folder()), (std::set<std::string>{"mine.part"}));
+}
+
+TEST_F(OutputFolderTest, DraftsOfKilledWritersAreRemovedAndThoseOfOthersStay) {
+  OutputFolder output(folder());
+  {
+    const Child killed([this] { static const Draft draft = makeDraft(folder()); });
+  }
+  const Draft written = makeDraft(folder());
+  fs::create_symlink(folder() / "mine", folder() / ".cdiff_draft.linked");
+  EXPECT_EQ(namesOf(folder()).size(), 3U);
+  output.removeUnfinished();
+  EXPECT_EQ(namesOf(folder()),
+            (std::set<std::string>{written.path.filename(), ".cdiff_draft.linked"}));
 }
 
 }  // namespace
