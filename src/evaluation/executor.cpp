@@ -115,7 +115,9 @@ void Executor::writeRecords() const {
   }
   std::vector<std::string> names;
   for (const std::size_t index : missing) names.push_back(plan_[index].id);
-  core::OutputFolder(core::OutputFolder(options_.results).subfolder("runs")).makeSubfolders(names);
+  core::OutputFolder runs(core::OutputFolder(options_.results).subfolder("runs"));
+  runs.removeUnfinished();
+  runs.makeSubfolders(names);
   for (const std::size_t index : missing) writeRecord(index);
 }
 
