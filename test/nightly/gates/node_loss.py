@@ -20,9 +20,9 @@ def what_is_wrong(folder, node):
 def replay(folder, recorder):
     """What is wrong with the bag: one of a recorder that was lost may lack its first chunk, or all."""
     results = folder / "r"
-    if recorder and not list(results.glob("session.bag*")):
-        return None
     begun = (results / "trace.csv").read_bytes().count(b"\n") > 1  # else there is nothing to replay
+    if (recorder or not begun) and not list(results.glob("session.bag*")):
+        return None
     program, code = run_cdiff(["replay", bag_of(results), "--results", folder / "again", "--quiet"], folder)
     return misbehavior(program, code, {0, 1, 2} | ({3} if recorder or not begun else set()))
 
