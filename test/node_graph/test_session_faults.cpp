@@ -216,6 +216,22 @@ TEST_F(SessionFaults, ScriptEndsThoughItsMasterStopsBeforeTheNodesBegin) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
+// One that ends while it starts its nodes knows only those before. Here it is a function of the
+// shell, and its node takes a second to finish its file.
+TEST_F(SessionFaults, ScriptWaitsForNodesThatItsRoslaunchForgot) {
+  const std::string finished = (session_.folder() / "finished").string();
+  session_.start(
+      "roslaunch() { env --default-signal=INT bash -c 'trap \"sleep 1; touch $0; exit\" INT; touch "
+      "$0.begun; while :; do sleep 0.1; done' " +
+      finished + " __name:=late_node & while [ ! -e " + finished +
+      ".begun ]; do sleep 0.1; done; }; export -f roslaunch; " +
+      script("scenario:=crossing_straight", session_));
+  EXPECT_LT(session_.endAfter(60.0), 60.0) << session_.log();
+  EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
+  EXPECT_TRUE(fs::exists(finished)) << session_.log();
+  EXPECT_EQ(session_.leftovers(), "");
+}
+
 TEST_F(SessionFaults, ScriptNamesAMasterThatDoesNotAnswer) {
   session_.start("E2E_CDIFF_MASTER=http://127.0.0.1:" + std::to_string(session_.port()) +
                  " BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS

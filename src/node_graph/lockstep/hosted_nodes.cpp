@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "node_graph/lockstep/message_gate.h"
+#include "node_graph/lockstep/node_process.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -80,6 +81,10 @@ bool hostedNodeRuns(const std::string& node) {
   const std::lock_guard<std::mutex> lock(host().mutex);
   const auto& running = host().running;
   return std::find(running.begin(), running.end(), node) != running.end();
+}
+
+bool nodeRuns(const std::string& node) {
+  return hostsNodes() ? hostedNodeRuns(node) : launchedProcess(node).has_value();
 }
 
 std::optional<int> hostedExitCode(const std::string& node) {

@@ -66,6 +66,9 @@ int runNodeObject(Arguments&&... arguments) {
 bool hostsNodes();
 /// Whether such a node (name without namespace) runs.
 bool hostedNodeRuns(const std::string& node);
+/// Whether a node of the session is there, in this process or as one of the same launch, also
+/// before it says anything.
+bool nodeRuns(const std::string& node);
 /// Its exit code once it has left; nullopt before.
 std::optional<int> hostedExitCode(const std::string& node);
 /// Those that have left, without namespace, in the order in which they did.

@@ -115,7 +115,7 @@ std::optional<Ending> Participant::unstartedEnding() {
   if (!stop_.raised()) return std::nullopt;
   if (stopped_at_.isZero()) stopped_at_ = ros::SteadyTime::now();
   // The simulator was stopped too and writes a result, or its death is why roslaunch stops us.
-  if (!simulatorRuns()) return Ending::kSimulatorGone;
+  if (!nodeRuns(kTrafficSimulatorNode)) return Ending::kSimulatorGone;
   if (secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
   return std::nullopt;
 }
@@ -163,12 +163,6 @@ std::optional<Ending> Participant::unexpectedEnding() {
   if (stop_.raised() && stopped_at_.isZero()) stopped_at_ = ros::SteadyTime::now();
   if (!stopped_at_.isZero() && secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
   return std::nullopt;
-}
-
-/// Whether it is there, as far as this can be seen before it publishes anything.
-bool Participant::simulatorRuns() const {
-  if (hostsNodes()) return hostedNodeRuns(kTrafficSimulatorNode);
-  return launchedProcess(kTrafficSimulatorNode).has_value();
 }
 
 bool Participant::simulatorSilent() { return heartbeat_.silent(ros::SteadyTime::now().toSec()); }

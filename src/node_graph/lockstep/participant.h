@@ -126,7 +126,6 @@ class Participant {
   void report();
   std::string missing() const;
   bool simulatorSilent();
-  bool simulatorRuns() const;
   bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
   void publishAck(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
   std::uint64_t lastTick() const { return next_tick_ == 0 ? 0 : next_tick_ - 1; }

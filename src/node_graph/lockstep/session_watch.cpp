@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/node_main.h"
 #include "node_graph/session_graph.h"
 
@@ -81,17 +82,19 @@ SessionEnd SessionWatch::endOfPatience(const std::vector<Missing>& missing, doub
           "nothing came for " + core::formatNumber(seconds) + " s: " + core::joinText(texts, "; ")};
 }
 
-bool SessionWatch::observersPending() const {
+bool SessionWatch::observersPending(double waited) const {
   for (const std::string& node : participants_.notFinished()) {
     const bool hopeless = connections_.hasLeft(node) || blamed_.count(node) > 0;
-    if (!hopeless && participants_.heard(node)) return true;
+    const auto begins = [&] { return waited < kSilence && nodeRuns(node); };
+    if (!hopeless && (participants_.heard(node) || begins())) return true;
   }
   return false;
 }
 
 void SessionWatch::waitForObservers(double seconds) {
   const Clock::time_point begin = Clock::now();
-  while (observersPending() && ros::ok() && secondsSince(begin) < seconds) spin(kSpinPeriod);
+  while (observersPending(secondsSince(begin)) && ros::ok() && secondsSince(begin) < seconds)
+    spin(kSpinPeriod);
   for (const std::string& node : participants_.notFinished()) killLaunchedProcess(node);
   for (const std::string& node : participants_.silent(kSilence)) killLaunchedProcess(node);
 }

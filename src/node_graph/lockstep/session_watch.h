@@ -58,13 +58,14 @@ class SessionWatch {
   /// The end of a session that lacks something after `seconds`. Of several nodes the one to blame
   /// says nothing at all, not even that it waits; it is ended, and not waited for again.
   SessionEnd endOfPatience(const std::vector<Missing>& missing, double seconds);
-  /// Waits until the observers have finished, at most `seconds`, but neither for who was blamed nor
-  /// for who was never heard. Who has not finished then is ended: it may not write beside the
-  /// simulator, nor hold up the end of the launch.
+  /// Waits until the observers have finished, at most `seconds`, but not for who was blamed, and
+  /// only 5 s for who runs and was never heard: it may just have begun its files. Who has not
+  /// finished then is ended: it may not write beside the simulator, nor hold up the end of the
+  /// launch.
   void waitForObservers(double seconds);
 
  private:
-  bool observersPending() const;
+  bool observersPending(double waited) const;
 
   StopSignal& stop_;
   const ParticipantTracker& participants_;
