@@ -61,6 +61,14 @@ bool writtenByThisLaunch(const fs::path& path) {
   return written >= launchTime().value_or(0.0);
 }
 
+/// Whether nodes of this launch have begun their files there.
+bool begunByThisLaunch(const fs::path& folder) {
+  for (const char* name : {"session.yaml", "session.bag", "session.bag.active"}) {
+    if (writtenByThisLaunch(folder / name)) return true;
+  }
+  return false;
+}
+
 /// The requested folder; empty when none was requested.
 fs::path askedFolder(const Parameters& parameters) {
   const std::string text = parameters.text("results");
@@ -130,8 +138,7 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
                                      // meant
     const auto options = requestedScenario(parameters);
     folder = resultFolder(parameters.text("results"), options);
-    const bool overwrite =
-        parameters.flag("overwrite", false) || writtenByThisLaunch(folder / "session.yaml");
+    const bool overwrite = parameters.flag("overwrite", false) || begunByThisLaunch(folder);
     const record::ResultFolder claimed(folder, kDeployment, overwrite);
     const int exit_code = writeUnstarted(options, folder, status, fault);
     writeExitCode(folder, exit_code);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "node_graph/lockstep/hosted_nodes.h"
+#include "node_graph/pacer_fixture.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -55,6 +56,22 @@ TEST(HostedNodes, EndAlsoWhenTheyFail) {
   const int before = ended;
   EXPECT_THROW(runNodeObject<EndingNode>(true), std::runtime_error);
   EXPECT_EQ(ended, before + 1);
+}
+
+TEST(HostedNodes, AreWaitedForAtTheEndOfASessionAlsoWhereNoneWasHeard) {
+  test::initRos();
+  StopSignal stop;
+  const ParticipantTracker participants({kMetricsNode, kRecorderNode});
+  const Connections connections;
+  SessionWatch watch(stop, participants, connections);
+  const auto wait = [&watch](double seconds) {
+    const auto begin = SessionWatch::Clock::now();
+    watch.waitForObservers(seconds);
+    return secondsSince(begin);
+  };
+  const HostedNode recorder("/" + std::string(kRecorderNode));
+  EXPECT_GE(wait(0.2), 0.2);
+  EXPECT_LT(wait(30.0), 20.0) << "it has 5 s";
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <random>
 #include <thread>
 
+#include "core/output_folder.h"
 #include "node_graph/launched_session.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
@@ -211,7 +212,7 @@ TEST_F(SessionFaults, ScriptEndsThoughItsMasterStopsBeforeTheNodesBegin) {
   EXPECT_LT(session_.endAfter(200.0), 200.0) << session_.log();
   EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
   EXPECT_EQ(session_.summary()["status"], "error");
-  EXPECT_NE(session_.fault().find("no ROS master answers at http://"), std::string::npos)
+  EXPECT_EQ(session_.fault().find("rosmaster: no ROS master answers at http://"), 0U)
       << session_.fault();
   EXPECT_EQ(session_.leftovers(), "");
 }
@@ -230,6 +231,16 @@ TEST_F(SessionFaults, ScriptWaitsForNodesThatItsRoslaunchForgot) {
   EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
   EXPECT_TRUE(fs::exists(finished)) << session_.log();
   EXPECT_EQ(session_.leftovers(), "");
+}
+
+// The recorder alone had begun.
+TEST_F(SessionFaults, ScriptWritesAResultBesideTheBagOfALostSession) {
+  core::OutputFolder(session_.results()).claim("session.bag");
+  session_.start("roslaunch() { echo bag >" + (session_.results() / "session.bag").string() +
+                 "; }; export -f roslaunch; " + script("scenario:=crossing_straight", session_));
+  EXPECT_LT(session_.endAfter(60.0), 60.0) << session_.log();
+  EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
+  EXPECT_EQ(session_.summary()["status"], "error");
 }
 
 TEST_F(SessionFaults, ScriptNamesAMasterThatDoesNotAnswer) {

@@ -92,13 +92,5 @@ TEST_F(SessionWatchTest, WaitsForObserversThatWereHeardAndHaveNotFinished) {
   EXPECT_LT(wait(10.0), 5.0);
 }
 
-// From here on nodes are threads of this process.
-TEST_F(SessionWatchTest, WaitsForAnObserverThatHasBegunAndWasNotHeardYet) {
-  const HostedNode recorder("/" + std::string(kRecorderNode));
-  const Clock::time_point begin = Clock::now();
-  watch_.waitForObservers(0.2);
-  EXPECT_GE(secondsSince(begin), 0.2);
-}
-
 }  // namespace
 }  // namespace cdiff::node_graph

@@ -463,13 +463,14 @@ esac
     def test_the_record_keeps_rows_of_checks_that_did_not_run(self):
         with tempfile.TemporaryDirectory() as folder:
             build, document = Path(folder), Path(folder) / "nightly.md"
-            known = [{"name": name, "properties": [{"name": "LABELS", "value": ["nightly"]}]} for name in ("soak", "mutants", "new")]
+            known = [{"name": name, "properties": [{"name": "LABELS", "value": ["nightly"]}]} for name in ("soak", "mutants", "new", "page")]
             ctest = build / "ctest"
             ctest.write_text("#!/bin/sh\necho '" + json.dumps({"tests": [*known, {"name": "unit"}]}) + "'\n")
             ctest.chmod(0o755)
             (build / "Testing").mkdir()
             (build / "Testing" / "ctest.xml").write_text(
-                '<testsuite><testcase name="soak" time="90" status="run"/></testsuite>')
+                '<testsuite><testcase name="soak" time="90" status="run"/>'
+                '<testcase name="page" time="0" status="notrun"><skipped message=""/></testcase></testsuite>')
             results = build / "test_results" / "e2e_cdiff"
             junit.write(results / "gtest-soak.xml", "soak", [("a", 1.0, None), ("b", 1.0, "broke")])
             document.write_text("Text.\n<!-- written by scripts/test --nightly: begin -->\n| Check | Last run |\n|---|---|\n"
@@ -477,8 +478,9 @@ esac
             subprocess.run([SOURCE / "test" / "nightly" / "record.py", build, document], check=True,
                            env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"})
             rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in document.read_text().splitlines() if "|" in line][2:]
-            self.assertEqual([row[0] for row in rows], ["every other test", "`soak`", "`mutants`", "`new`"])
+            self.assertEqual([row[0] for row in rows], ["every other test", "`soak`", "`mutants`", "`new`", "`page`"])
             self.assertEqual(rows[1][4:], ["1 passed, 1 failed", "1.5"])
+            self.assertIn("left out", rows[4][4])
             self.assertEqual(rows[2][1:], ["2026-01-01", "abc", "2 cores", "54 passed, 0 failed", "12.0"])
             self.assertEqual([rows[0][1], rows[3][1]], ["not run yet", "not run yet"])  # "unit" was left out
             self.assertTrue(document.read_text().startswith("Text.\n") and document.read_text().endswith("-->\nMore.\n"))
