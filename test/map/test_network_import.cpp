@@ -119,6 +119,18 @@ constexpr const char* kStraightRoad = R"(<?xml version="1.0"?>
 <width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right></laneSection></lanes>
 </road></OpenDRIVE>)";
 
+// netconvert builds a road on it, or an assertion of its own ends it.
+TEST_F(NetworkImport, RefusesNumbersThatAreNone) {
+  for (const std::string number : {"nan", "-inf", "1e999"}) {
+    std::string text = kStraightRoad;
+    text.replace(text.find("hdg=\"0\""), 7, "hdg=\"" + number + "\"");
+    const std::string message = errorOf([&] { importNetwork(write("wrong.xodr", text)); });
+    EXPECT_NE(message.find("has '" + number + "' for 'hdg' of <geometry>; a finite number"),
+              std::string::npos)
+        << message;
+  }
+}
+
 TEST_F(NetworkImport, ConvertsOpenDrive) {
   const ImportedNetwork network = importNetwork(write("road.xodr", kStraightRoad));
   ASSERT_EQ(network.changes.size(), 1u);

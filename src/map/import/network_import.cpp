@@ -3,12 +3,16 @@
 #include "map/import/network_import.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <pugixml.hpp>
+#include <string_view>
 
 #include "core/checked_cache.h"
 #include "core/file.h"
 #include "core/guarded_process.h"
+#include "core/markup.h"
 #include "core/program.h"
 #include "core/scratch_folder.h"
 #include "core/spelling.h"
@@ -125,25 +129,44 @@ struct Format {
   std::string (*convert)(const fs::path& source);
 };
 
-/// Counts the levels of elements below a document.
-struct LevelCounter : pugi::xml_tree_walker {
+/// Attributes that place a road or a node.
+bool isPlace(std::string_view attribute) {
+  constexpr std::array<std::string_view, 16> kPlaces = {
+      "s", "t", "x", "y",         "z",         "hdg",     "length", "a",
+      "b", "c", "d", "curvature", "curvStart", "curvEnd", "lat",    "lon"};
+  return std::find(kPlaces.begin(), kPlaces.end(), attribute) != kPlaces.end();
+}
+
+/// Counts the levels of elements below a document, and finds the first number that is none.
+struct ElementWalker : pugi::xml_tree_walker {
+  static constexpr std::size_t kMostLetters = 40;
   int levels = 0;
-  bool for_each(pugi::xml_node& /*node*/) override {
+  std::string no_number;
+  bool for_each(pugi::xml_node& node) override {
     levels = std::max(levels, depth() + 1);
-    return true;
+    for (const pugi::xml_attribute& attribute : node.attributes()) {
+      if (isPlace(attribute.name()) && !std::isfinite(attribute.as_double()))
+        no_number = "'" + core::cutText(attribute.value(), kMostLetters) + "' for '" +
+                    attribute.name() + "' of <" + core::cutText(node.name(), kMostLetters) + ">";
+    }
+    return no_number.empty();
   }
 };
 
-/// netconvert's time grows with the square of the levels. A text that is no XML is left to it.
-void requireFewLevels(const std::string& content, const std::string& source) {
+/// netconvert's time grows with the square of the levels, and it builds roads on "nan". A text that
+/// is no XML is left to it.
+void requireConvertible(const std::string& content, const std::string& source) {
   constexpr int kMostLevels = 100;  // standard files have about ten
   pugi::xml_document document;
   if (!document.load_buffer(content.data(), content.size(), pugi::parse_minimal)) return;
-  LevelCounter counter;
-  document.traverse(counter);
-  if (counter.levels <= kMostLevels) return;
+  ElementWalker walker;
+  document.traverse(walker);
+  if (!walker.no_number.empty())
+    throw core::InputError("network '" + source + "' has " + walker.no_number +
+                           "; a finite number was expected");
+  if (walker.levels <= kMostLevels) return;
   throw core::InputError("network '" + source + "' nests elements " +
-                         std::to_string(counter.levels) + " levels deep; at most " +
+                         std::to_string(walker.levels) + " levels deep; at most " +
                          std::to_string(kMostLevels) + " were expected");
 }
 
@@ -161,7 +184,7 @@ void importConverted(const Format& format, const std::string& content, ImportedN
   if (auto text = core::checkedContent(network.file)) {
     network.text = std::move(*text);
   } else {
-    requireFewLevels(content, network.source.string());
+    requireConvertible(content, network.source.string());
     network.text = format.convert(network.source);
     core::storeChecked(network.file, network.text);
   }
@@ -208,8 +231,8 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
                            kNetconvertLimitVariable + " to more seconds if the network needs them");
   }
   if (process.endSignal() != 0)
-    throw core::InputError(subject + ": netconvert crashed: " + process.endText() + ": " +
-                           output.end());
+    throw core::InputError(subject + ": netconvert crashed (" + process.endText() +
+                           ") on what the file holds; check its numbers and references");
   if (process.exitCode() == 0) return;
   throw core::InputError(subject + ": netconvert could not convert it (" + process.endText() +
                          "): " + output.end());
