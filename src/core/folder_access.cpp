@@ -43,12 +43,21 @@ int placeUnlessThere(const fs::path& from, const fs::path& to) {
   return ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno;  // a file system that cannot do that
 }
 
-Draft makeDraft(const fs::path& folder) {
+Draft makeDraft(const fs::path& folder, std::string_view text) {
   std::string name = (folder / kDraftStem).string() + "XXXXXX";
   FileDescriptor descriptor(::mkostemp(name.data(), O_CLOEXEC));
+  if (!descriptor) return {};
+  errno = ENOSPC;  // where less than all is written
   // Until it is locked another process may take it for left behind: its writer finds it gone then.
-  if (descriptor && ::flock(descriptor.get(), LOCK_EX | LOCK_NB) != 0) descriptor.close();
-  return {name, std::move(descriptor)};
+  const bool written =
+      ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor.get(), 0644) == 0 &&
+      ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+  if (written) return {name, std::move(descriptor)};
+  const int reason = errno;
+  descriptor.close();
+  ::unlink(name.c_str());
+  errno = reason;
+  return {};
 }
 
 void removeLeftDrafts(const fs::path& folder) {

@@ -6,12 +6,13 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/file_descriptor.h"
 
 namespace cdiff::core {
 
-// What locks and records do with folders: no link is followed, and nothing is replaced.
+// What locks, leases and records do with folders: no link is followed, and nothing is replaced.
 
 /// Throws InputError: "cannot WHAT 'path': REASON".
 [[noreturn]] void failOn(const std::filesystem::path& path, const std::string& what, int error);
@@ -31,9 +32,9 @@ struct Draft {
   FileDescriptor descriptor;
 };
 
-/// Makes an empty one in a folder and locks it, so that its writer is known to live. Its descriptor
-/// is closed where that is refused (errno).
-Draft makeDraft(const std::filesystem::path& folder);
+/// Makes one with this text in a folder, and locks it, so that its writer is known to live. Where
+/// that fails its descriptor is closed, errno says why, and nothing stays.
+Draft makeDraft(const std::filesystem::path& folder, std::string_view text);
 
 /// Removes the drafts of a folder whose writers are gone.
 void removeLeftDrafts(const std::filesystem::path& folder);

@@ -109,16 +109,11 @@ bool FolderLock::tryLock() {
 /// Places a lock that is locked and signed before anybody can see it, where there is none.
 bool FolderLock::placeSigned() {
   const fs::path file = folder_ / kFile;
-  Draft draft = makeDraft(folder_);
-  FileDescriptor descriptor = std::move(draft.descriptor);
-  if (!descriptor) failOn(file, "write", errno);
-  const std::string text = holderSignature(program_);
-  const bool written =
-      ::fchmod(descriptor.get(), 0644) == 0 &&
-      ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
-  const int reason = written ? placeUnlessThere(draft.path, file) : errno;
-  const bool placed = isSameFile(descriptor.get(), directory_.get(), kFile);
-  if (placed) descriptor_ = std::move(descriptor);
+  Draft draft = makeDraft(folder_, holderSignature(program_));
+  if (!draft.descriptor) failOn(file, "write", errno);
+  const int reason = placeUnlessThere(draft.path, file);
+  const bool placed = isSameFile(draft.descriptor.get(), directory_.get(), kFile);
+  if (placed) descriptor_ = std::move(draft.descriptor);
   ::unlink(draft.path.c_str());
   // Taken, or the draft or the folder was removed just now.
   const bool again = reason == EEXIST || reason == ENOENT;

@@ -104,15 +104,11 @@ bool LeaseFolder::isLeftBehind(const fs::path& file) {
 /// Gives a file that is signed and locked already its name; 0, or the reason why it has not got it.
 int LeaseFolder::placeOnce(const fs::path& file, FileDescriptor& descriptor) const {
   makeFolder(folder_);
-  Draft draft = makeDraft(folder_);
+  Draft draft = makeDraft(
+      folder_, holderSignature(terms_.program) + "boot: " + bootId() + "\nbeat: " + beatText(0));
+  if (!draft.descriptor) return errno;
   descriptor = std::move(draft.descriptor);
-  if (!descriptor) return errno;
-  const std::string text =
-      holderSignature(terms_.program) + "boot: " + bootId() + "\nbeat: " + beatText(0);
-  const bool written =
-      ::fchmod(descriptor.get(), 0644) == 0 &&
-      ::pwrite(descriptor.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
-  const int reason = written ? placeUnlessThere(draft.path, file) : errno;
+  const int reason = placeUnlessThere(draft.path, file);
   ::unlink(draft.path.c_str());
   return reason;
 }

@@ -116,19 +116,11 @@ class Record {
 
   /// A new file beside the record that holds these names.
   Draft draftOf(const std::set<std::string>& names) const {
-    const fs::path file = folder_ / OutputFolder::kRecord;
     std::string text = std::string(kRecordHead) + "\n";
     for (const std::string& name : names) text += name + "\n";
-    Draft draft = makeDraft(folder_);
+    Draft draft = makeDraft(folder_, text);
     if (!draft.descriptor) failOnRecord(folder_, errno);
-    errno = ENOSPC;  // where less than all is written
-    const bool written = ::pwrite(draft.descriptor.get(), text.data(), text.size(), 0) ==
-                             static_cast<ssize_t>(text.size()) &&
-                         ::fchmod(draft.descriptor.get(), 0644) == 0;
-    const int reason = errno;
-    if (written) return draft;
-    ::unlink(draft.path.c_str());
-    failOn(file, "write", reason);
+    return draft;
   }
 
   /// Makes an empty one that is whole before anybody can see it.

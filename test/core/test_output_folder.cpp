@@ -438,9 +438,9 @@ TEST_F(OutputFolderTest, HalvesOfKilledWritersAreRemovedByTheNext) {
 TEST_F(OutputFolderTest, DraftsOfKilledWritersAreRemovedAndThoseOfOthersStay) {
   OutputFolder output(folder());
   {
-    const Child killed([this] { static const Draft draft = makeDraft(folder()); });
+    const Child killed([this] { static const Draft draft = makeDraft(folder(), "half"); });
   }
-  const Draft written = makeDraft(folder());
+  const Draft written = makeDraft(folder(), "half");
   fs::create_symlink(folder() / "mine", folder() / ".cdiff_draft.linked");
   EXPECT_EQ(namesOf(folder()).size(), 3U);
   output.removeUnfinished();

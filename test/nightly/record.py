@@ -60,7 +60,7 @@ def cases(build, name):
 def outcome(build, name, run):
     """The text of a row's result."""
     if run.find("skipped") is not None:
-        return "left out: a program of its is not installed"
+        return "left out: a program or input that it needs is missing"
     passed = run.find("failure") is None and run.get("status") == "run"
     counts = cases(build, name)
     if counts is None:

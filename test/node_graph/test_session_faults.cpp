@@ -233,8 +233,8 @@ TEST_F(SessionFaults, ScriptWaitsForNodesThatItsRoslaunchForgot) {
   EXPECT_EQ(session_.leftovers(), "");
 }
 
-// The recorder alone had begun.
-TEST_F(SessionFaults, ScriptWritesAResultBesideTheBagOfALostSession) {
+// The recorder alone had begun: its bag, without a tick, gives way to the result.
+TEST_F(SessionFaults, ScriptWritesTheResultOfASessionThatLeftNothingButItsBag) {
   core::OutputFolder(session_.results()).claim("session.bag");
   session_.start("roslaunch() { echo bag >" + (session_.results() / "session.bag").string() +
                  "; }; export -f roslaunch; " + script("scenario:=crossing_straight", session_));

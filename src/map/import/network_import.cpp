@@ -231,8 +231,8 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
                            kNetconvertLimitVariable + " to more seconds if the network needs them");
   }
   if (process.endSignal() != 0)
-    throw core::InputError(subject + ": netconvert crashed (" + process.endText() +
-                           ") on what the file holds; check its numbers and references");
+    throw core::InputError(subject + ": netconvert crashed: " + process.endText() + ": " +
+                           output.end());
   if (process.exitCode() == 0) return;
   throw core::InputError(subject + ": netconvert could not convert it (" + process.endText() +
                          "): " + output.end());
