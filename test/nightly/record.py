@@ -4,7 +4,7 @@
     record.py BUILD DOCUMENT
 
 A row of a check that did not run this time stays as it is, with its own date; one that never ran says so. The tests
-without the label are one row, `every other test`.
+without the label are one row, `every other test`. The gates have a table of their own and no row.
 """
 import datetime
 import json
@@ -18,6 +18,7 @@ from pathlib import Path
 BEGIN, END = "<!-- written by scripts/test --nightly: begin -->", "<!-- end -->"
 HEAD = ["| Check | Last run | Revision | Machine | Result | Minutes |", "|---|---|---|---|---|---|"]
 OTHERS = "every other test"
+ELSEWHERE = {"gates"}  # in docs/reliability.md, a row for each
 NEVER = "not run yet"
 
 
@@ -99,7 +100,7 @@ def main():
     stamp = [datetime.date.today().isoformat(), revision(document.resolve().parent), machine()]
     rows = {**kept_rows(table), **rows_of(build, nightly, others, stamp)}
     lines = HEAD + ["| " + " | ".join([check if check == OTHERS else f"`{check}`", *rows.get(check, [NEVER, "", "", "", ""])]) + " |"
-                    for check in [OTHERS, *nightly]]
+                    for check in [OTHERS, *nightly] if check not in ELSEWHERE]
     temporary = document.with_suffix(".md.new")
     temporary.write_text(before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + after)
     temporary.replace(document)

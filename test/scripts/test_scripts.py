@@ -457,13 +457,14 @@ esac
         self.assertEqual(ctest()[-2:], ["-LE", "nightly"])
         self.assertNotIn("-LE", ctest("--nightly"))
         self.assertEqual(ctest("--nightly", "soak")[-2:], ["-R", "soak"])
+        self.assertEqual(ctest("--nightly", "others")[-2:], ["-LE", "nightly"])
         self.assertEqual(calls_of("test", "--nighty"), [])
         self.assertIn(["e2e_cdiff_nightly_tests"], targets_of(calls_of("test", "--nightly")))
 
     def test_the_record_keeps_rows_of_checks_that_did_not_run(self):
         with tempfile.TemporaryDirectory() as folder:
             build, document = Path(folder), Path(folder) / "nightly.md"
-            known = [{"name": name, "properties": [{"name": "LABELS", "value": ["nightly"]}]} for name in ("soak", "mutants", "new", "page")]
+            known = [{"name": name, "properties": [{"name": "LABELS", "value": ["nightly"]}]} for name in ("soak", "mutants", "new", "page", "gates")]
             ctest = build / "ctest"
             ctest.write_text("#!/bin/sh\necho '" + json.dumps({"tests": [*known, {"name": "unit"}]}) + "'\n")
             ctest.chmod(0o755)
