@@ -12,6 +12,7 @@ LEFT_ALONE = re.compile(r"\bthrow\b|visitor|<<|Error\b|[tT]ext\b|[tT]exts\b|\bre
 # Functions that return or write texts.
 TEXT_FUNCTION = re.compile(r"^\s*(?:static |inline )*(?:const )?(?:std::string|char)[&*]? |::describe\(|\bdescribe\(|Descriptor\b[\w:]*\(|\bnames?\(")
 KEYWORD = re.compile(r"(?:return|break|continue|using|case|default|else|do|goto|delete|if|for|while|switch|const|auto|static|typedef|try|catch)\b")
+RESERVATION = re.compile(r"\.reserve\(")
 STATEMENT = re.compile(r"(?:\+\+|--|\*)?[A-Za-z_][^\s]*?(?: [-+*/|&]?= .*|\(.*\)|\+\+|--)$", re.DOTALL)
 SMALLEST = 1e-5  # constants below it guard against rounding
 
@@ -161,13 +162,13 @@ def extremes(source):
 
 
 def removals(source):
-    """Statements of their own left out."""
+    """Statements of their own left out, but those that only reserve memory."""
     for start, end in source.statements:
         statement = source.code[start:end - 1].strip()
         begin = start + len(source.code[start:end]) - len(source.code[start:end].lstrip())
         if KEYWORD.match(statement) or not STATEMENT.match(statement) or not source.usable(begin):
             continue
-        if source.kinds[begin] == "function":
+        if not RESERVATION.search(statement) and source.kinds[begin] == "function":
             yield source.mutant("removal", begin, end, ";")
 
 
@@ -188,8 +189,8 @@ def conditions(source):
 
 
 def arguments(source):
-    """Two arguments the other way round, but of std::min and std::max."""
-    pattern = r"(?<!std::min)(?<!std::max)(?<=\w)\((([A-Za-z_][\w.]*(?:\(\))?), ([A-Za-z_][\w.]*(?:\(\))?))\)(?! \{)"
+    """Two arguments the other way round, but of functions for which that is the same."""
+    pattern = r"(?<!std::min)(?<!std::max)(?<!std::hypot)(?<=\w)\((([A-Za-z_][\w.]*(?:\(\))?), ([A-Za-z_][\w.]*(?:\(\))?))\)(?! \{)"
     for found in re.finditer(pattern, source.code):
         if source.usable(found.start(1)) and source.kinds[found.start()] == "function" and found.group(2) != found.group(3):
             yield source.mutant("arguments", found.start(1), found.end(1), f"{found.group(3)}, {found.group(2)}")

@@ -60,6 +60,10 @@ class Mutation(unittest.TestCase):
         self.assertEqual(new_lines("return"), ["double gap(const std::vector<double>& v, double a, double b) { return {};",
                                                "void Follower::reset() { return;"])
 
+    def test_what_never_changes_meaning_is_left_alone(self):
+        source = mutation.Source("a.cpp", "double f(double a, double b) {\n  values.reserve(a);\n  return std::hypot(a, b);\n}\n")
+        self.assertEqual([*mutation.removals(source), *mutation.arguments(source)], [])
+
     def test_a_mutant_is_the_text_with_its_change(self):
         source = mutation.Source("a.cpp", TEXT)
         mutant = next(mutation.removals(source))
