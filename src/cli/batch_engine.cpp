@@ -43,14 +43,14 @@ void writeScript(const evaluation::SlurmBatch& batch, const evaluation::SlurmOpt
   folder.write("job.sh", evaluation::slurmScript(batch, options));
 }
 
-/// Ends the jobs of a batch whose submission failed. Throws an error that names them where Slurm
-/// does not.
+/// Ends the jobs of a batch whose submission failed, if there are any. Throws an error that names
+/// them where Slurm does not.
 void cancelAfter(const std::string& name, const core::InputError& error) {
   try {
     evaluation::cancelJobs(name);
   } catch (const core::InputError& other) {
     throw core::InputError(std::string(error.what()) + "; jobs of the name " + name +
-                           " are queued and could not be ended (" + other.what() +
+                           " may be queued and could not be ended (" + other.what() +
                            "): end them with --cancel");
   }
 }
@@ -88,7 +88,7 @@ void submitJobs(const evaluation::Executor& executor, const fs::path& results,
     for (const auto& arguments : evaluation::sbatchArguments(batch, options))
       ids.push_back(evaluation::submitJob(arguments));
   } catch (const core::InputError& error) {
-    if (!ids.empty()) cancelAfter(batch.name, error);
+    cancelAfter(batch.name, error);  // also one that was taken, and answered too late
     throw core::InputError(std::string(error.what()) + "; nothing is queued: go on " +
                            arguments.again + " when that is mended");
   }

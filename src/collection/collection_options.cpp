@@ -14,6 +14,7 @@
 #include "learning/samples/scene_file.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planners/registry.h"
+#include "session/demand_file.h"
 
 namespace cdiff::collection {
 namespace {
@@ -190,7 +191,7 @@ session::ScenarioOptions collectionScenario(session::ScenarioOptions scenario,
   scenario.protocol.deviation_percent = 100.0;
   const bool own_lights = random.uniform(key, kLights) < options.program_lights_share;
   scenario.lights = own_lights ? "program" : "green";
-  const bool from_file = scenario.demand != "generated" && scenario.demand != "none";
+  const bool from_file = session::hasDemandFile(scenario);
   if (from_file && scenario.seed % 2 != 0) scenario.demand = "generated";
   const double density =
       random.uniform(key, kDensity, options.minimum_density, options.maximum_density);

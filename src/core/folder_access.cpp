@@ -75,10 +75,10 @@ fs::path withoutSlash(const fs::path& folder) {
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
-FileDescriptor openFolder(const fs::path& folder) {
+FileDescriptor openFolderIfThere(const fs::path& folder) {
   constexpr int kFlags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
   FileDescriptor descriptor(::open(folder.c_str(), kFlags));
-  if (descriptor) return descriptor;
+  if (descriptor || errno == ENOENT) return descriptor;
   int reason = errno;
   std::error_code none;
   if (fs::is_symlink(folder, none) && ::access(folder.c_str(), F_OK) != 0) reason = errno;
@@ -91,11 +91,22 @@ FileDescriptor openFolder(const fs::path& folder) {
   failOn(folder, "open the folder", reason);
 }
 
+FileDescriptor openFolder(const fs::path& folder) {
+  FileDescriptor descriptor = openFolderIfThere(folder);
+  if (!descriptor) failOn(folder, "open the folder", ENOENT);
+  return descriptor;
+}
+
 FileDescriptor makeFolder(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_symlink(folder, error)) fs::create_directories(folder, error);
-  if (error && (!fs::exists(folder) || fs::is_directory(folder)))
-    throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());
+  constexpr int kTries = 10;  // another process may remove it as soon as it is made
+  for (int i = 0; i < kTries; ++i) {
+    std::error_code error;
+    if (!fs::is_symlink(folder, error)) fs::create_directories(folder, error);
+    if (error == std::errc::no_such_file_or_directory && i + 1 < kTries) continue;
+    if (error && (!fs::exists(folder) || fs::is_directory(folder)))
+      throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());
+    if (FileDescriptor descriptor = openFolderIfThere(folder)) return descriptor;
+  }
   return openFolder(folder);
 }
 

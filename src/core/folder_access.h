@@ -42,7 +42,10 @@ void removeLeftDrafts(const std::filesystem::path& folder);
 /// The path without a slash at its end, which would follow a link.
 std::filesystem::path withoutSlash(const std::filesystem::path& folder);
 
-/// Opens a folder that is no link. Throws InputError naming what is there.
+/// Opens a folder that is no link; none where nothing is there. Throws InputError naming what is
+/// there instead.
+FileDescriptor openFolderIfThere(const std::filesystem::path& folder);
+/// As above, and throws InputError where nothing is there.
 FileDescriptor openFolder(const std::filesystem::path& folder);
 
 /// Makes a folder and its parents where they are missing, and opens it.

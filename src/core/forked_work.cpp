@@ -92,12 +92,7 @@ class Waiting {
       : child_(child), state_(state), call_limit_(call_limit), stop_(stop) {}
 
   WorkEnd end() {
-    int status = 0;
-    while (::waitpid(child_, &status, WNOHANG) == 0) {
-      if (stop_) passOn();
-      if (how_.empty() && state_.since != 0) endLateCall();
-      std::this_thread::sleep_for(kLookPeriod);
-    }
+    const int status = waitForStatus();
     WorkEnd end;
     end.stage = state_.stage;
     if (state_.returned && WIFEXITED(status)) {
@@ -116,6 +111,18 @@ class Waiting {
   }
 
  private:
+  /// As ::waitpid gives it; exit code 2 where another part of the program reaped the copy.
+  int waitForStatus() {
+    int status = 0;
+    pid_t ended = 0;
+    while ((ended = ::waitpid(child_, &status, WNOHANG)) == 0) {
+      if (stop_) passOn();
+      if (how_.empty() && state_.since != 0) endLateCall();
+      std::this_thread::sleep_for(kLookPeriod);
+    }
+    return ended == child_ ? status : W_EXITCODE(ExitCode::kRunTimeError, 0);
+  }
+
   void passOn() {
     catchStopSignals();  // clears `stop_`, for the next signal
     if (++stops_ == 1) stopped_at_ = steadyNow();

@@ -131,8 +131,8 @@ std::optional<int> reapGroup(pid_t leader, bool wait) {
   } while (answer < 0 && errno == EINTR);
   if (answer == 0 && end.si_pid == 0) return std::nullopt;
   int status = 0;
-  if (answer != 0) return status;  // someone else reaped it
-  ::kill(-leader, SIGKILL);        // what it left behind
+  if (answer != 0) return W_EXITCODE(ExitCode::kRunTimeError, 0);  // someone else reaped it
+  ::kill(-leader, SIGKILL);                                        // what it left behind
   ::waitpid(leader, &status, 0);
   return status;
 }

@@ -51,8 +51,8 @@ struct ProcessStreams {
 void becomeChild(pid_t parent, const ProcessStreams& streams);
 
 /// Reaps a child that leads a process group, and kills what is left of the group; without `wait`
-/// only if it has ended. Its status as ::waitpid gives it (0 where another part of the program
-/// reaped it), or nothing while it runs.
+/// only if it has ended. Its status as ::waitpid gives it (exit code 2 where another part of the
+/// program reaped it), or nothing while it runs.
 std::optional<int> reapGroup(pid_t leader, bool wait);
 
 /// The exit code in a status of ::waitpid; 128 + the signal that ended the process.

@@ -42,8 +42,8 @@ bool isOfThisHost(const std::map<std::string, std::string>& facts) {
 }  // namespace
 
 Lease::~Lease() {
-  // A file of a later generation belongs to whoever took the work over.
-  ::unlink(file_.c_str());
+  // Whoever took the work over may have a file of that name, too.
+  if (isHeld()) ::unlink(file_.c_str());
 }
 
 bool Lease::isHeld() const {

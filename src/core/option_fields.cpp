@@ -12,6 +12,7 @@
 
 #include "core/spelling.h"
 #include "core/text.h"
+#include "core/yaml_text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
 
@@ -67,12 +68,6 @@ class PathVisitor : public OptionsVisitor {
 };
 
 std::string lastPart(const std::string& path) { return path.substr(path.rfind('.') + 1); }
-
-std::string yamlQuoted(const std::string& text) {
-  YAML::Emitter emitter;
-  emitter << YAML::DoubleQuoted << text;
-  return emitter.c_str();
-}
 
 /// Writes the fields as indented YAML.
 class DumpVisitor : public OptionsVisitor {

@@ -201,9 +201,8 @@ void requireOwn(int directory, const fs::path& folder, const std::string& name,
 }  // namespace
 
 void OutputFolder::requireFree(const fs::path& folder, const std::vector<std::string>& names) {
-  std::error_code none;
-  if (!fs::is_directory(folder, none) && !fs::exists(fs::symlink_status(folder, none))) return;
-  const FileDescriptor directory = openFolder(withoutSlash(folder));
+  const FileDescriptor directory = openFolderIfThere(withoutSlash(folder));
+  if (!directory) return;
   const Record record(directory.get(), folder, false);
   for (const std::string& name : names) {
     requireOwn(directory.get(), folder, name, record);

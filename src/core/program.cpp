@@ -63,6 +63,7 @@ void prepareProgram() {
   }
   ignoreSignal(SIGPIPE);
   ignoreSignal(SIGXFSZ);
+  if (isIgnored(SIGCHLD)) handle(SIGCHLD, SIG_DFL);  // else nobody learns how a child ended
   for (const int signal : stopSignals()) {
     if (!isIgnored(signal)) handle(signal, endAtOnce);
   }

@@ -8,6 +8,16 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 
+namespace cdiff::core {
+
+std::string yamlQuoted(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
+}  // namespace cdiff::core
+
 namespace cdiff::core::detail {
 namespace {
 

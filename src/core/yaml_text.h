@@ -4,7 +4,16 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <string>
+
 #include "e2e_cdiff/core/options.h"
+
+namespace cdiff::core {
+
+/// A text in YAML's double quotes, which reads as that text whatever it holds.
+std::string yamlQuoted(const std::string& text);
+
+}  // namespace cdiff::core
 
 namespace cdiff::core::detail {
 

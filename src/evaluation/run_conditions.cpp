@@ -50,7 +50,7 @@ struct ScenarioConditions {
 };
 
 /// Inputs that are the scenario's; weights and program may be what is compared.
-const std::vector<std::string> kScenarioInputs = {"network", "demand", "route_file",
+const std::vector<std::string> kScenarioInputs = {"network", "demand", "storyboard", "route_file",
                                                   "speed_target"};
 
 std::map<std::string, ScenarioConditions> byScenario(const RunSet& set) {

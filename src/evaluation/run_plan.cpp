@@ -17,9 +17,12 @@
 #include "evaluation/suite_selection.h"
 #include "map/import/network_import.h"
 #include "planners/registry.h"
+#include "plugins/plugin_loader.h"
 #include "session/closed_loop.h"
+#include "session/demand_file.h"
 #include "session/session_request.h"
 #include "session/unfit_combination.h"
+#include "storyboard/scenario_reader.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -39,6 +42,8 @@ int noteLibrary(dl_phdr_info* info, std::size_t, void* data) {
 std::string hashProgram() {
   std::map<std::string, fs::path> parts = {{"", "/proc/self/exe"}};
   ::dl_iterate_phdr(noteLibrary, &parts);
+  for (const plugins::PluginLibrary& plugin : plugins::findPlugins())
+    parts["plug-in " + plugin.file.string()] = plugin.file;
   core::Sha256 hash;
   for (const auto& [name, path] : parts) hash.update(core::readFile(path, "program"));
   return hash.finish();
@@ -52,6 +57,15 @@ const std::string& InputHasher::ofFile(const fs::path& file, const std::string& 
   return hash;
 }
 
+const std::string& InputHasher::ofStoryboard(const std::string& file) {
+  std::string& hash = storyboards_[file];
+  if (!hash.empty()) return hash;
+  core::Sha256 all;
+  for (const std::string& part : storyboard::readScenario(file, true).files)
+    all.update(ofFile(part, "OpenSCENARIO"));
+  return hash = all.finish();
+}
+
 const std::string& InputHasher::ofNetwork(const planning::PlannerDescriptor& planner,
                                           const session::ScenarioOptions& options) {
   const std::string model = planner.network(options.planner_options, options.guidance).model;
@@ -63,8 +77,9 @@ const std::string& InputHasher::ofNetwork(const planning::PlannerDescriptor& pla
 InputHashes InputHasher::hashes(const session::ScenarioOptions& options) {
   InputHashes hashes = {{"program", programSha256()}};
   hashes["network"] = ofFile(map::networkFile(options.network), "network");
-  if (options.demand != "generated" && options.demand != "none")
-    hashes["demand"] = ofFile(options.demand, "demand");
+  if (session::hasDemandFile(options)) hashes["demand"] = ofFile(options.demand, "demand");
+  if (!options.storyboard.file.empty())
+    hashes["storyboard"] = ofStoryboard(options.storyboard.file);
   if (!options.route.bench2drive_file.empty())
     hashes["route_file"] = ofFile(options.route.bench2drive_file, "route file");
   if (!options.metrics.speed_target_file.empty())

@@ -16,8 +16,8 @@ namespace cdiff::evaluation {
 
 // The runs of a matrix before they are run, and hashes of all that their measures depend on.
 
-/// SHA-256 by name: "network", "demand", "route_file", "speed_target", "ego_weights", "cbv_weights"
-/// (where the scenario has them) and "program".
+/// SHA-256 by name: "network", "demand", "storyboard", "route_file", "speed_target", "ego_weights",
+/// "cbv_weights" (where the scenario has them) and "program".
 using InputHashes = std::map<std::string, std::string>;
 
 /// What a run's measures depend on besides its resolved scenario: the content of the files that the
@@ -31,14 +31,17 @@ class InputHasher {
 
  private:
   const std::string& ofFile(const std::filesystem::path& file, const std::string& what);
+  /// Of an OpenSCENARIO file and its catalogs.
+  const std::string& ofStoryboard(const std::string& file);
   const std::string& ofNetwork(const planning::PlannerDescriptor& planner,
                                const session::ScenarioOptions& options);
   std::map<std::string, std::string> files_;
+  std::map<std::string, std::string> storyboards_;
   std::map<std::pair<std::string, std::string>, std::string> models_;  ///< by planner and model
 };
 
-/// SHA-256 of this program and those of its libraries that are ours. Package version and revision
-/// would not distinguish a build with changed sources from the one before.
+/// SHA-256 of this program, of those of its libraries that are ours, and of its plug-ins. Package
+/// version and revision would not distinguish a build with changed sources from the one before.
 const std::string& programSha256();
 
 /// Names of the inputs that differ, or are on one side only, joined by ", "; empty when none does.

@@ -157,13 +157,13 @@ void writeExitCode(const fs::path& folder, int exit_code) {
   if (!folder.empty()) core::writeOwnFile(folder / "exit_code", text);
 }
 
-void writeRefusal(const fs::path& folder) {
-  writeExitCode({}, core::ExitCode::kBadInput);
+void writeRefusal(const fs::path& folder, int exit_code) {
+  writeExitCode({}, exit_code);
   if (folder.empty()) return;
   try {
     record::requireFreeFolder(folder, false);
     const core::FolderLock lock(folder, kDeployment);
-    writeExitCode(folder, core::ExitCode::kBadInput);
+    writeExitCode(folder, exit_code);
   } catch (const core::InputError&) {
     // Another session's folder, or none can be made: what is wrong is printed in any case.
   }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/program.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "node_graph/parameters.h"
 
@@ -33,9 +34,9 @@ inline constexpr const char* kExitCodeVariable = "E2E_CDIFF_EXIT_CODE_FILE";
 /// exits with 0 whatever happened.
 void writeExitCode(const std::filesystem::path& folder, int exit_code);
 
-/// The exit code of a session that bad input kept from starting; a folder in use, or with an
-/// earlier result, is not touched. `folder` may be empty.
-void writeRefusal(const std::filesystem::path& folder);
+/// The exit code of a session that bad input, or another error, kept from starting; a folder in
+/// use, or with a result, is not touched. `folder` may be empty.
+void writeRefusal(const std::filesystem::path& folder, int exit_code = core::ExitCode::kBadInput);
 
 /// Relative paths in parameters are meant from where the user started the session; empty: from
 /// here. Throws InputError when there is no such folder.

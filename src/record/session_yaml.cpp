@@ -2,14 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "record/session_yaml.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <Eigen/Core>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
 #include "core/text.h"
+#include "core/yaml_text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
 
@@ -81,12 +80,6 @@ std::string instructionSet() {
 
 namespace {
 
-std::string quoted(const std::string& text) {
-  YAML::Emitter emitter;
-  emitter << YAML::DoubleQuoted << text;
-  return emitter.c_str();
-}
-
 std::string line(int depth, const std::string& key, const std::string& value) {
   return std::string(static_cast<std::size_t>(2 * depth), ' ') + key + ": " + value + "\n";
 }
@@ -104,20 +97,22 @@ std::string indented(const std::string& block) {
 }
 
 std::string networkBlock(const map::ImportedNetwork& network) {
-  std::string text = "network:\n" + line(1, "source", quoted(network.source.string())) +
-                     line(1, "source_sha256", quoted(network.source_sha256)) +
-                     line(1, "imported_sha256", quoted(core::sha256(network.text)));
+  std::string text = "network:\n" + line(1, "source", core::yamlQuoted(network.source.string())) +
+                     line(1, "source_sha256", core::yamlQuoted(network.source_sha256)) +
+                     line(1, "imported_sha256", core::yamlQuoted(core::sha256(network.text)));
   if (network.changes.empty()) return text + line(1, "changes", "[]");
   text += "  changes:\n";
-  for (const std::string& change : network.changes) text += "    - " + quoted(change) + "\n";
+  for (const std::string& change : network.changes)
+    text += "    - " + core::yamlQuoted(change) + "\n";
   return text;
 }
 
 std::string machineBlock() {
   std::string text = "libraries:\n";
-  for (const auto& [name, version] : libraryVersions()) text += line(1, name, quoted(version));
-  return text + "processor:\n" + line(1, "model", quoted(processorModel())) +
-         line(1, "instruction_set", quoted(instructionSet()));
+  for (const auto& [name, version] : libraryVersions())
+    text += line(1, name, core::yamlQuoted(version));
+  return text + "processor:\n" + line(1, "model", core::yamlQuoted(processorModel())) +
+         line(1, "instruction_set", core::yamlQuoted(instructionSet()));
 }
 
 /// Facts of a planner's network under keys that start with `prefix`; "" where it has none.
@@ -127,13 +122,13 @@ std::string networkLines(const session::ScenarioOptions& options, const std::str
   const planning::PlannerDescriptor* descriptor = planners::findPlanner(planner);
   if (descriptor == nullptr || !descriptor->network) return "";
   const planning::NetworkFacts facts = descriptor->network(options.planner_options, guidance);
-  std::string text = line(1, prefix + "model", quoted(facts.model)) +
-                     line(1, prefix + "conditioning", facts.conditioning);
+  std::string text = line(1, prefix + "model", core::yamlQuoted(facts.model)) +
+                     line(1, prefix + "conditioning", core::yamlQuoted(facts.conditioning));
   if (!inferred_here) return text;  // the weights may not even be here
   text += line(1, prefix + "model_files_sha256",
-               quoted(descriptor->weights_sha256(options.planner_options)));
+               core::yamlQuoted(descriptor->weights_sha256(options.planner_options)));
   for (const auto& [key, value] : facts.instruction_sets)
-    text += line(1, prefix + key, quoted(value));
+    text += line(1, prefix + key, core::yamlQuoted(value));
   return text;
 }
 
@@ -150,16 +145,18 @@ std::string inferenceBlock(const session::ScenarioOptions& options, const RunFac
 
 std::string sessionYaml(const session::SessionSetup& setup, const RunFacts& facts) {
   const session::ScenarioOptions& options = setup.options();
-  return line(0, "schema_version", "1") + "package:\n" + line(1, "name", quoted("e2e_cdiff")) +
-         line(1, "version", quoted(packageVersion())) +
-         line(1, "revision", quoted(packageRevision())) +
-         line(0, "deployment", quoted(facts.deployment)) +
-         (facts.recorded_by.empty() ? "" : line(0, "recorded_by", quoted(facts.recorded_by))) +
+  return line(0, "schema_version", "1") + "package:\n" +
+         line(1, "name", core::yamlQuoted("e2e_cdiff")) +
+         line(1, "version", core::yamlQuoted(packageVersion())) +
+         line(1, "revision", core::yamlQuoted(packageRevision())) +
+         line(0, "deployment", core::yamlQuoted(facts.deployment)) +
+         (facts.recorded_by.empty() ? ""
+                                    : line(0, "recorded_by", core::yamlQuoted(facts.recorded_by))) +
          line(0, "deterministic", facts.deterministic ? "true" : "false") + "seeds:\n" +
          line(1, "root", std::to_string(options.seed)) + "simulator:\n" +
-         line(1, "version", quoted(facts.simulator_version)) + networkBlock(setup.import()) +
-         machineBlock() + inferenceBlock(options, facts) + "scenario:\n" +
-         indented(core::dumpOptions(options));
+         line(1, "version", core::yamlQuoted(facts.simulator_version)) +
+         networkBlock(setup.import()) + machineBlock() + inferenceBlock(options, facts) +
+         "scenario:\n" + indented(core::dumpOptions(options));
 }
 
 namespace {

@@ -20,12 +20,20 @@ double numberOf(const pugi::xml_node& node, const char* attribute, double absent
   return optionalNumber(node, attribute).value_or(absent);
 }
 
+/// Mean time between two vehicles of a flow [s], 0 where it has none. "exp(RATE)" draws the times.
+double periodOf(const pugi::xml_node& flow) {
+  const std::string text = flow.attribute("period").value();
+  if (text.rfind("exp(", 0) != 0 || text.back() != ')') return numberOf(flow, "period", 0.0);
+  const double rate = core::parseNumber(text.substr(4, text.size() - 5)).value_or(0.0);
+  return rate > 0.0 ? 1.0 / rate : 0.0;
+}
+
 /// Vehicles of a flow from `begin` to `end` [s].
 double vehiclesOfFlow(const pugi::xml_node& flow, double begin, double end) {
   const double from = numberOf(flow, "begin", 0.0);
   const double until = std::max(numberOf(flow, "end", 86400.0), from + 1e-3);
   const double share = std::max(0.0, std::min(end, until) - std::max(begin, from));
-  const double period = numberOf(flow, "period", 0.0);
+  const double period = periodOf(flow);
   if (flow.attribute("number")) return numberOf(flow, "number", 0.0) * share / (until - from);
   if (period > 0.0) return share / period;
   return share * (numberOf(flow, "vehsPerHour", 0.0) / 3600.0 + numberOf(flow, "probability", 0.0));

@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/planner_by_slot.h"
+#include "session/demand_file.h"
 #include "session/steered_cbvs.h"
 #include "session/unfit_combination.h"
 #include "simulation/sumo_input_rules.h"
@@ -266,12 +267,13 @@ void ScenarioOptions::validate() const {
                            cbv_planner + "' drives naturalistically only; expected one of " +
                            core::joinText(planners::guidedPlannerNames(), ", "));
   }
-  const bool file = demand != "generated" && demand != "none";
-  if (file && !core::isFile(demand)) {
-    throw InputError("key 'demand' is '" + demand +
-                     "'; expected generated, none, or a route file that exists");
+  if (hasDemandFile(*this)) {
+    if (!core::isFile(demand)) {
+      throw InputError("key 'demand' is '" + demand +
+                       "'; expected generated, none, or a route file that exists");
+    }
+    checkDemandFile(demand);
   }
-  if (file) checkDemandFile(demand);
   checkStatuses(verdict.statuses);
   validateSteering(*this);
 }
@@ -344,7 +346,7 @@ ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOpti
                     options);
   const bool file_network = looksLikeFile(options.network);
   if (file_network) options.network = resolveFile(options.network, file.parent_path(), "");
-  if (options.demand != "generated" && options.demand != "none") {
+  if (hasDemandFile(options)) {
     options.demand = resolveFile(options.demand, file.parent_path(), options.network);
   }
   options.metrics.speed_target_file =

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/kept_content.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "session/demand_file.h"
 #include "simulation/sumo_input_rules.h"
 
 namespace cdiff::session {
@@ -92,8 +93,7 @@ std::unique_ptr<simulation::TrafficSimulator> SessionSetup::makeSimulator() cons
   simulation::SumoSession session;
   session.network_file = import_.file;
   session.network_source = import_.source;
-  if (options_.demand != "generated" && options_.demand != "none")
-    session.demand_file = options_.demand;
+  if (hasDemandFile(options_)) session.demand_file = options_.demand;
   session.begin_time = options_.begin_time;
   session.simulation_step = options_.simulation_step;
   session.seed = static_cast<std::uint64_t>(options_.seed);

@@ -3,6 +3,7 @@
 #include "session/steering.h"
 
 #include "core/text.h"
+#include "core/yaml_text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::session {
@@ -11,16 +12,6 @@ namespace {
 constexpr double kLastTime = 1e6;        // [s]
 constexpr double kLargestWeight = 1000;  // as guidance::WeightedObjective
 constexpr double kFastest = 60.0;        // [m/s]
-
-/// A text that YAML cannot take for anything else.
-std::string quoted(const std::string& text) {
-  std::string safe = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') safe += '\\';
-    safe += letter;
-  }
-  return safe + "\"";
-}
 
 }  // namespace
 
@@ -105,7 +96,7 @@ std::string flowText(const SteeringEntry& entry) {
     if (!value.empty()) text += std::string(", ") + key + ": " + value;
   };
   const auto addText = [&](const char* key, const std::string& value) {
-    if (!value.empty()) add(key, quoted(value));
+    if (!value.empty()) add(key, core::yamlQuoted(value));
   };
   addText("profile", entry.profile);
   addText("mode", entry.mode);

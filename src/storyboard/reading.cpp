@@ -32,6 +32,7 @@ Catalogs::Catalogs(const XoscElement& locations) {
 }
 
 void Catalogs::add(const std::string& file) {
+  files_.push_back(file);
   const auto catalog = XoscElement::load(file).find("Catalog");
   if (!catalog) return;
   std::vector<XoscElement>& entries = entries_[catalog->text("name")];

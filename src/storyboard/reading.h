@@ -30,9 +30,12 @@ class Catalogs {
   XoscElement entry(const XoscElement& reference) const;
   /// `element` itself, or the entry where it is a <CatalogReference>.
   XoscElement resolve(const XoscElement& element) const;
+  /// The files that were read.
+  const std::vector<std::string>& files() const { return files_; }
 
  private:
   void add(const std::string& file);
+  std::vector<std::string> files_;
   std::map<std::string, std::vector<XoscElement>> entries_;  ///< by catalog
 };
 

@@ -346,7 +346,7 @@ struct InitAction {
 
 /// A whole file with its catalogs.
 struct Scenario {
-  std::string file;
+  std::vector<std::string> files;  ///< its own and those of its catalogs
   std::string name;
   std::string network;  ///< path of the OpenDRIVE or SUMO file, or a name where no file is there
   Source network_source;

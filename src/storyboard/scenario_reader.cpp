@@ -285,7 +285,9 @@ Scenario readScenario(const std::string& file, bool ignore_unsupported) {
   reading.carla = root.child("FileHeader").text("description", "").rfind("CARLA:", 0) == 0;
   if (const auto locations = root.find("CatalogLocations")) reading.catalogs = Catalogs(*locations);
   Scenario scenario;
-  scenario.file = file;
+  scenario.files = {file};
+  const std::vector<std::string>& catalogs = reading.catalogs.files();
+  scenario.files.insert(scenario.files.end(), catalogs.begin(), catalogs.end());
   scenario.name = fs::path(file).stem().string();
   scenario.parameters = root.parameters();
   if (const auto variables = root.find("VariableDeclarations"))

@@ -4,25 +4,16 @@
 
 #include "core/scratch_folder.h"
 #include "core/text.h"
+#include "core/yaml_text.h"
 #include "planners/registry.h"
 #include "suite/crossing_networks.h"
 
 namespace cdiff::suite {
 namespace {
 
-/// A text in YAML's double quotes: edges may be called "-211" or "10#0".
-std::string quoted(const std::string& text) {
-  std::string yaml = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') yaml += '\\';
-    yaml += letter;
-  }
-  return yaml + "\"";
-}
-
 std::string edgesText(const SuggestedRoute& route) {
   std::vector<std::string> edges;
-  for (const std::string& edge : route.edges) edges.push_back(quoted(edge));
+  for (const std::string& edge : route.edges) edges.push_back(core::yamlQuoted(edge));
   return "[" + core::joinText(edges, ", ") + "]";
 }
 
@@ -105,8 +96,8 @@ std::string newScenarioText(const NewScenario& scenario) {
          "validate --print FILE`.\n\n# Version of this file format.\nschema_version: 1\n" +
          "# Name of the scenario in results.\nname: " + scenario.name +
          "\n# Road network: a file, relative to this one, or a shipped name.\nnetwork: " +
-         quoted(scenario.network) + "\n\n" + routeGroup(scenario) + kTrafficGroups + plannerKeys() +
-         kRuleGroups +
+         core::yamlQuoted(scenario.network) + "\n\n" + routeGroup(scenario) + kTrafficGroups +
+         plannerKeys() + kRuleGroups +
          "# Root seed of every random draw: another one gives other traffic.\nseed: " +
          std::to_string(scenario.seed) + "\n";
 }

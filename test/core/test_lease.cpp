@@ -151,6 +151,18 @@ TEST_F(LeaseTest, IsLostWhereAnotherTookItOver) {
   EXPECT_EQ(leases().claim("a"), nullptr);
 }
 
+TEST_F(LeaseTest, LostLeavesTheNextOneWithItsNameThere) {
+  LeaseFolder mine = leases();
+  auto lease = mine.claim("a");
+  fs::remove(file("a.1"));
+  LeaseFolder theirs = leases();
+  const auto next = theirs.claim("a");
+  ASSERT_NE(next, nullptr);
+  lease = nullptr;
+  EXPECT_TRUE(next->isHeld());
+  EXPECT_EQ(files(), std::set<std::string>{"a.1"});
+}
+
 TEST_F(LeaseTest, BeatsInItsFile) {
   LeaseFolder mine = leases(0.01);
   const auto lease = mine.claim("a");

@@ -8,9 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <functional>
 
+#include "core/forked_work.h"
 #include "core/guarded_process.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -87,6 +89,23 @@ TEST(Program, ASignalThatTheCallerIgnoresStaysIgnored) {
     return 0;
   });
   EXPECT_EQ(code, 0);
+}
+
+TEST(Program, ExitCodesOfChildrenAreSeenWhateverTheCallerIgnores) {
+  const auto exitCodeOfAChild = [] {
+    return *runForked([] { return 7; }, 60.0, std::atomic<bool>{false}).exit_code;
+  };
+  EXPECT_EQ(inChild([&] {
+              ::signal(SIGCHLD, SIG_IGN);
+              prepareProgram();
+              return exitCodeOfAChild();
+            }),
+            7);
+  EXPECT_EQ(inChild([&] {
+              ::signal(SIGCHLD, SIG_IGN);  // and again by some library
+              return exitCodeOfAChild();
+            }),
+            ExitCode::kRunTimeError);
 }
 
 TEST(Program, ThreeSignalsRequestAStop) {

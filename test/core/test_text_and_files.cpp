@@ -37,6 +37,8 @@ TEST(Text, NumbersRoundTrip) {
   EXPECT_EQ(parseNumber(formatNumber(1.0 / 3.0)), 1.0 / 3.0);
   EXPECT_EQ(formatFixed(2.345, 1), "2.3");
   EXPECT_FALSE(parseNumber("3x"));
+  EXPECT_EQ(parseNumber("+3"), 3.0);
+  EXPECT_FALSE(parseNumber("+-3"));
   EXPECT_FALSE(parseNumber(""));
   EXPECT_FALSE(parseNumber("nan"));
   EXPECT_FALSE(parseNumber("inf"));

@@ -205,6 +205,18 @@ TEST(RunInputs, HashTheContentOfTheFilesThatAScenarioNames) {
   EXPECT_EQ(changedInputs(more, more), "");
 }
 
+TEST(RunInputs, HashAStoryboardWithItsCatalogs) {
+  const test::TemporaryFolder folder;
+  const fs::path shipped = core::shareFolder() / "config/openscenario";
+  fs::copy(shipped, folder.path() / "story", fs::copy_options::recursive);
+  session::ScenarioOptions options = session::loadScenario("arterial_exit");
+  options.storyboard.file = (folder.path() / "story/cut_in.xosc").string();
+  const InputHashes before = InputHasher().hashes(options);
+  std::ofstream(folder.path() / "story/catalogs/unused.xosc") << "<OpenSCENARIO/>";
+  const InputHashes now = InputHasher().hashes(options);
+  EXPECT_EQ(changedInputs(before, now), "storyboard");
+}
+
 TEST_F(ExecutorTest, KillsALateRunWithAllThatItStarted) {
   options_.timeout = 0.5;
   const auto records = execute(test::fakePlan({"hang", "good"}));

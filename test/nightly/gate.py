@@ -37,9 +37,14 @@ def attempt(trial):
 
 
 def prepared(gate, draw, count):
-    """The gate's trials. What they need together and cannot have is one that failed, and the last."""
+    """The gate's trials. What they need together and cannot have is one that failed, and the last; so is that there are none."""
+    none = True
     try:
-        yield from gate.trials(draw, count)
+        for trial in gate.trials(draw, count):
+            none = False
+            yield trial
+        if none:
+            raise RuntimeError("no trial was made")
     except Exception as error:
         text = f"could not be prepared: {type(error).__name__}: {error}"
         yield "preparation", lambda: text

@@ -20,18 +20,24 @@ RAW_TEXTS = re.compile(r"Traceback \(most recent|terminate called|Assertion|std:
 
 
 class Folder:
-    """A temporary folder, which goes with the trial."""
+    """A temporary folder, which goes with the trial, as do the programs that were started in it."""
 
     def __enter__(self):
         self.path = Path(tempfile.mkdtemp(prefix="cdiff_gate_"))
         return self.path
 
     def __exit__(self, *_):
+        for program in Program.started:
+            if self.path in program.log.parents:
+                program.kill()
+        Program.started = [program for program in Program.started if self.path not in program.log.parents]
         shutil.rmtree(self.path, ignore_errors=True)
 
 
 class Program:
     """A command whose processes carry a mark of their own; what they write goes into a file."""
+
+    started = []  # all whose folder is still there
 
     def __init__(self, command, folder, **environment):
         self.mark = secrets.token_hex(8)
@@ -42,6 +48,7 @@ class Program:
         with self.log.open("wb") as log:
             self.process = subprocess.Popen([str(part) for part in command], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                             stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+        Program.started.append(self)
 
     def end(self, limit):
         """The exit code, None where the program has not ended within `limit` seconds; then it is killed."""

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // Sessions on a stand-in for CARLA's ROS bridge (fake_carla_bridge.cpp).
+#include <sys/resource.h>
+
 #include "node_graph/session_launch.h"
 
 namespace cdiff {
@@ -70,6 +72,26 @@ TEST_F(CarlaSession, EndsReadableWhereTheBridgeStops) {
   EXPECT_EQ(lastFaultSource(), "carla_bridge");
   EXPECT_EQ(exitCode(), "2\n");
   EXPECT_TRUE(fs::exists(results() / "report.html"));
+}
+
+TEST_F(CarlaSession, LeavesAnExitCodeWhereItsFilesCannotGrow) {
+  rlimit usual{};
+  ::getrlimit(RLIMIT_FSIZE, &usual);
+  const rlimit small{400000, usual.rlim_max};  // less than the trace of two minutes
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  const std::string log =
+      launchCarla(kEndless, "set:=\"protocol.time_limit=120 verdict.judge=false\"");
+  ::setrlimit(RLIMIT_FSIZE, &usual);
+  ASSERT_TRUE(fs::exists(results() / "exit_code")) << log;
+  EXPECT_EQ(exitCode(), "2\n") << log;
+  EXPECT_NE(log.find("trace.csv"), std::string::npos) << log;
+}
+
+TEST_F(CarlaSession, LeavesAnExitCodeWhereNoBridgeAnswers) {
+  const std::string log = launchCarla(0, "start_timeout:=3 set:=\"seed=1\"");
+  ASSERT_TRUE(fs::exists(results() / "exit_code")) << log;
+  EXPECT_EQ(exitCode(), "2\n") << log;
+  EXPECT_FALSE(fs::exists(results() / "summary.json"));
 }
 
 TEST_F(CarlaSession, RefusesARoleThatNoActorHas) {

@@ -330,6 +330,26 @@ TEST_F(SessionFaults, ScriptNamesAnArgumentOfAnotherKind) {
   }
 }
 
+TEST_F(SessionFaults, ScriptRemovesOnlyTheFoldersThatItMade) {
+  const fs::path kept = session_.folder() / "kept";
+  fs::create_directory(kept);
+  session_.start("BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS
+                 "/session scenario:=no_scenario results:=" +
+                 (kept / "made" / "too").string());
+  EXPECT_LT(session_.endAfter(60.0), 60.0);
+  EXPECT_EQ(session_.exitStatus(), 3) << session_.log();
+  EXPECT_TRUE(fs::exists(kept));
+  EXPECT_FALSE(fs::exists(kept / "made"));
+}
+
+TEST_F(SessionFaults, ScriptNamesATemporaryFolderThatIsNotThere) {
+  session_.start("export TMPDIR=/no_such_folder; " +
+                 script("scenario:=crossing_straight", session_));
+  EXPECT_LT(session_.endAfter(20.0), 20.0);
+  EXPECT_EQ(session_.exitStatus(), 3) << session_.log();
+  EXPECT_FALSE(fs::exists(session_.results()));
+}
+
 struct Fault {
   const char* process;
   int signal;

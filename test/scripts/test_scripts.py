@@ -461,6 +461,17 @@ esac
         self.assertEqual(calls_of("test", "--nighty"), [])
         self.assertIn(["e2e_cdiff_nightly_tests"], targets_of(calls_of("test", "--nightly")))
 
+    def test_a_session_that_ends_at_once_keeps_its_exit_code_in_a_folder_with_a_space(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scripts = Path(folder) / "my package" / "scripts"
+            scripts.mkdir(parents=True)
+            for name in ("session", "isolated", "environment"):
+                shutil.copy(SOURCE / "scripts" / name, scripts)
+            environment = {**os.environ, "BUILD": "no build"}
+            codes = [subprocess.run([scripts / "session", "scenario:=a"], env=environment, capture_output=True, check=False).returncode
+                     for _ in range(5)]
+            self.assertEqual(codes, [2] * 5)  # not built yet
+
     def test_the_record_keeps_rows_of_checks_that_did_not_run(self):
         with tempfile.TemporaryDirectory() as folder:
             build, document = Path(folder), Path(folder) / "nightly.md"

@@ -32,6 +32,12 @@ TEST_F(DemandFiles, CountVehiclesOfATime) {
   EXPECT_NEAR(demand.vehicles(0.0, 99.0), 20.0 + 3.0, 1e-9);
 }
 
+TEST_F(DemandFiles, CountVehiclesOfAFlowWithDrawnTimes) {
+  std::ofstream(file())
+      << R"xml(<routes><flow id="f" begin="0" end="100" period="exp(0.5)"/></routes>)xml";
+  EXPECT_NEAR(DemandFile(file()).vehicles(0.0, 10.0), 5.0, 1e-9);
+}
+
 TEST_F(DemandFiles, KnowRoutes) {
   const DemandFile demand(file());
   const std::vector<std::string> named = {"a", "b", "c"};

@@ -20,10 +20,10 @@
 namespace cdiff::node_graph {
 
 /// Keeps account, for the traffic simulator node, of the decisions of a session that does not wait
-/// for late answers (paced by the wall clock, or with an external planner): which answers have
-/// arrived, how late, and what drove each vehicle meanwhile. A decision is settled once nothing
-/// more is awaited for it: every answer is here, its planner has answered a later decision, or 10 s
-/// of simulated time have passed. Each settled decision gives one DecisionRecord message.
+/// for late answers (paced by the wall clock): which answers have arrived, how late, and what drove
+/// each vehicle meanwhile. A decision is settled once nothing more is awaited for it: every answer
+/// is here, its planner has answered a later decision, or 10 s of simulated time have passed. Each
+/// settled decision gives one DecisionRecord message.
 class DecisionTracker {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "core/file.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "map/import/network_import.h"
@@ -143,9 +144,15 @@ int CarlaSessionNode::run() {
   for (const std::string& role : link_.roles().cbvs) link_.setAutopilot(role, true);
   link_.forgetFrames();
   begin_ = Clock::now();
-  runTicks();
-  handBack();
-  return finish();
+  try {
+    runTicks();
+    handBack();
+    return finish();
+  } catch (const std::exception& error) {  // a disk that is full, for example
+    handBack();
+    writeExitCode(results_, core::ExitCode::kRunTimeError);
+    throw core::Error(error.what());
+  }
 }
 
 bool CarlaSessionNode::takeFrame(CarlaFrame& frame) {
@@ -178,22 +185,29 @@ void CarlaSessionNode::runTicks() {
     Decision decision;
     session::TickRecord record;
     record.snapshot = &world_->snapshot();
-    if (takeFrame(frame)) {
-      if (world_->snapshot().decision_tick) {
-        decision = decide();
-        record.selection = &decision.selection;
-        record.actions = &decision.actions;
-        record.images = &decision.images;
-        record.latencies = decision.latencies;
-      } else {
-        selector_->observe(world_->snapshot());
-      }
-      command(frame);
-    }
+    if (takeFrame(frame) && fill(record, decision)) command(frame);
     writer_->observe(record);
     running = world_->snapshot().status == SessionStatus::kRunning;
     if (record.selection != nullptr) world_->assign(decision.selection);
   }
+}
+
+bool CarlaSessionNode::fill(session::TickRecord& record, Decision& decision) {
+  try {
+    if (world_->snapshot().decision_tick) {
+      decision = decide();
+      record.selection = &decision.selection;
+      record.actions = &decision.actions;
+      record.images = &decision.images;
+      record.latencies = decision.latencies;
+    } else {
+      selector_->observe(world_->snapshot());
+    }
+  } catch (const std::exception& error) {
+    world_->end(SessionStatus::kError, kCbvIdentificationNode, error.what());
+    return false;
+  }
+  return true;
 }
 
 CarlaSessionNode::Decision CarlaSessionNode::decide() {
@@ -317,6 +331,9 @@ int runCarlaSession(StopSignal& stop) {
     return runNodeObject<CarlaSessionNode>(parameters, stop);
   } catch (const core::InputError&) {
     writeRefusal(parameters.text("results"));
+    throw;
+  } catch (const core::Error&) {
+    writeRefusal(parameters.text("results"), core::ExitCode::kRunTimeError);
     throw;
   }
 }

@@ -43,6 +43,8 @@ class CarlaSessionNode {
   void runTicks();
   /// False when the session came to its end instead.
   bool takeFrame(CarlaFrame& frame);
+  /// Decides where the frame's tick is one of a decision; false as above.
+  bool fill(session::TickRecord& record, Decision& decision);
   Decision decide();
   void ask(const session::LoopPlanner& asked, const std::string& name,
            const std::vector<planning::PlanningTask>& tasks, Decision& decision);

@@ -28,6 +28,7 @@ void PlannerStatistics::observe(const PlannerDecision& decision) {
   count("vehicle", fail_safe - unseeing);
   if (!decision.fault.empty()) count("planning call", batch_size_);
   if (batch_size_ == 0) return;
+  ++decisions_;
   latencies_ms_.push_back(decision.latency_ms);
   if (decision.latency_ms > 1000.0 * decision_period_) ++deadline_misses_;
 }
@@ -41,7 +42,7 @@ void PlannerStatistics::diagnose(diagnostic_updater::DiagnosticStatusWrapper& st
   }
   status.summary(all == 0 ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
                  all == 0 ? "planning" : std::to_string(all) + " fail-safe actions");
-  std::vector<double> sorted = latencies_ms_;
+  std::vector<double> sorted(latencies_ms_.begin(), latencies_ms_.end());
   std::sort(sorted.begin(), sorted.end());
   if (!sorted.empty()) {
     for (const auto& [name, share] : {std::pair{"p50", 0.5}, {"p95", 0.95}}) {
@@ -49,7 +50,7 @@ void PlannerStatistics::diagnose(diagnostic_updater::DiagnosticStatusWrapper& st
       status.add(std::string("latency ") + name + " [ms]", core::formatFixed(value, 2));
     }
   }
-  status.add("decisions", latencies_ms_.size());
+  status.add("decisions", decisions_);
   status.add("deadline misses", deadline_misses_);
   status.add("batch size", batch_size_);
   status.add("image age [s]", core::formatFixed(image_age_, 3));

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <boost/circular_buffer.hpp>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -20,8 +21,8 @@
 
 namespace cdiff::node_graph {
 
-/// How a planner fares over a session: latency [ms], batch size, age of images, faults by kind,
-/// calls that took longer than the decision period. For /diagnostics.
+/// How a planner fares over a session: latency of the last 1000 calls [ms], batch size, age of
+/// images, faults by kind, calls that took longer than the decision period. For /diagnostics.
 class PlannerStatistics {
  public:
   /// `decision_period` [s]: a call that takes longer in wall time misses its deadline.
@@ -36,7 +37,8 @@ class PlannerStatistics {
 
  private:
   double decision_period_;
-  std::vector<double> latencies_ms_;
+  boost::circular_buffer<double> latencies_ms_{1000};
+  std::uint64_t decisions_ = 0;
   std::map<std::string, std::uint64_t> faults_;
   std::uint64_t deadline_misses_ = 0;
   std::size_t batch_size_ = 0;  ///< vehicles in the last call

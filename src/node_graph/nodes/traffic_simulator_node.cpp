@@ -232,12 +232,16 @@ std::string TrafficSimulatorNode::takeCommand(const Topic& topic, const AnyMessa
   return answer.refused;
 }
 
-/// A fault that a node reports is recorded once, whoever else reports it too.
+/// A fault that a node reports is recorded once, whoever else reports it too; beyond the most of
+/// them, that there are more.
 void TrafficSimulatorNode::noteFault(const std::string& source, const std::string& given) {
   constexpr std::size_t kMostFaults = 200;
   constexpr std::size_t kMostLetters = 1000;
-  const std::string text = core::cutText(given, kMostLetters);
-  if (noted_faults_.size() == kMostFaults || !noted_faults_.insert(text).second) return;
+  std::string text = core::cutText(given, kMostLetters);
+  if (noted_faults_.size() > kMostFaults || noted_faults_.count(text) != 0) return;
+  if (noted_faults_.size() == kMostFaults)
+    text = "more than " + std::to_string(kMostFaults) + " faults; the rest is not named";
+  noted_faults_.insert(text);
   ROS_WARN("%s: %s", source.c_str(), text.c_str());
   world_->recordFault(source, text);
 }

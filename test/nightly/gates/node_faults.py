@@ -57,16 +57,19 @@ def judge(session, results, node, kind, expected):
 def attempt(topic, kind, random, expected):
     with Folder() as folder, RosMaster(folder) as master:
         results = folder / "r"
+        disturber = None
+        if kind in ("garbage", "wrong"):
+            disturber = master.run(["/usr/bin/python3", DISTURBER, topic, kind, random.randrange(10**6)])
+            disturber.wait_for(lambda: "waiting" in disturber.text(), "the disturber")
         session = Program([ROOT / "scripts" / "session", *SESSION, f"set:=at_most={PACE} protocol.time_limit={LIMIT}", f"results:={results}"],
                           folder, E2E_CDIFF_MASTER=master.uri)
         process = session.find(NODES[topic])
-        if kind in ("garbage", "wrong"):
-            master.run(["/usr/bin/python3", DISTURBER, topic, kind, random.randrange(10**6)])
-        else:
+        if not disturber:
             session.wait_for(lambda: list(results.glob("trace.csv*")), "the session's trace")
             time.sleep(random.uniform(0.0, 1.0))
             disturb(process, kind, random)
-        return judge(session, results, NODES[topic], kind, expected)
+        failure = judge(session, results, NODES[topic], kind, expected)
+        return failure or ("nothing was sent" if disturber and "sent" not in disturber.text() else None)
 
 
 def trials(random, count):

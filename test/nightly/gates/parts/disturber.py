@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Sends on a topic that is another node's: disturber.py TOPIC garbage|wrong SEED.
 
-Whenever that node sends, `garbage` sends random bytes and `wrong` its message with other bytes in some places.
+Whenever that node sends, `garbage` sends random bytes and `wrong` its message with other bytes in some places. Prints "waiting" before there
+is such a topic, and "sent" once it has sent something.
 """
 import random
 import sys
@@ -31,6 +32,7 @@ def changed(content):
 
 def main():
     rospy.init_node("disturber")
+    print("waiting", flush=True)
     kind, name, _ = rostopic.get_topic_class(TOPIC, blocking=True)
     sent = type("Sent", (Bytes, kind), {"__slots__": ["content"], "_slot_types": ["uint8[]"]})
     output = rospy.Publisher(name, sent, queue_size=10)
@@ -39,6 +41,7 @@ def main():
         if message._connection_header["callerid"] == rospy.get_name():
             return
         output.publish(sent(draw.randbytes(draw.randrange(1, 2000)) if KIND == "garbage" else changed(message._buff)))
+        print("sent", flush=True)
 
     rospy.Subscriber(name, rospy.AnyMsg, disturb)
     rospy.spin()
