@@ -150,7 +150,7 @@ TEST_F(SessionNamespaces, TwoOnOneMasterHaveTheBytesOfEachAlone) {
 
 TEST_F(SessionNamespaces, OneThatIsNoNameIsRefused) {
   session_.start("BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS "/session ns:=7up results:=a");
-  EXPECT_LT(session_.endAfter(20.0), 20.0);
+  EXPECT_LT(session_.endAfter(100.0), 100.0);
   EXPECT_EQ(session_.exitStatus(), 3);
   EXPECT_NE(session_.log().find("'ns:=7up' names no namespace"), std::string::npos)
       << session_.log();

@@ -122,7 +122,7 @@ TEST_P(NodeletCrash, LeavesTheResultOfTheTicksBefore) {
   session_.start(command());
   ASSERT_TRUE(session_.hasTicks()) << session_.log();
   ASSERT_TRUE(crash());
-  EXPECT_LT(session_.endAfter(60.0), 60.0);
+  EXPECT_LT(session_.endAfter(100.0), 100.0);
   EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
   EXPECT_EQ(session_.exitCode(), "2\n") << session_.log();
   EXPECT_EQ(session_.summary()["status"], "error");
@@ -165,7 +165,7 @@ std::string scriptWithPlugin(const test::LaunchedSession& session, const std::st
 TEST(NodeletSession, AMetricThatHangsIsNamedAndCostsItsOwnMeasuresAlone) {
   test::LaunchedSession session;
   session.start(scriptWithPlugin(session, "CRASHING_METRIC=endless", "answer_timeout:=3"));
-  EXPECT_LT(session.endAfter(60.0), 60.0);
+  EXPECT_LT(session.endAfter(100.0), 100.0);
   EXPECT_EQ(session.exitCode(), "2\n") << session.log();
   EXPECT_EQ(session.summary()["status"], "error");
   EXPECT_EQ(session.fault().rfind("metrics_node: ", 0), 0U) << session.fault();
@@ -188,7 +188,7 @@ class NodeletFault : public ::testing::TestWithParam<CrashingNodelet> {};
 TEST_P(NodeletFault, EndsTheSessionWithAResult) {
   test::LaunchedSession session;
   session.start(scriptWithPlugin(session, GetParam().variables, GetParam().arguments));
-  EXPECT_LT(session.endAfter(60.0), 60.0);
+  EXPECT_LT(session.endAfter(100.0), 100.0);
   EXPECT_EQ(session.exitCode(), "2\n") << session.log();
   EXPECT_EQ(session.summary()["status"], "error");
   EXPECT_EQ(session.fault(),
@@ -220,7 +220,7 @@ TEST(NodeletSession, ANodeletThatIsUnloadedEndsTheSessionAndIsNamed) {
   unload.request.name = "/a/cbv_identification_node";
   EXPECT_TRUE(ros::service::call("/a/session_nodelets/unload_nodelet", unload)) << session.log();
   ros::shutdown();
-  EXPECT_LT(session.endAfter(60.0), 60.0) << session.log();
+  EXPECT_LT(session.endAfter(100.0), 100.0) << session.log();
   EXPECT_EQ(session.exitCode(), "2\n") << session.log();
   EXPECT_EQ(session.summary()["status"], "error");
   EXPECT_EQ(session.fault(), "cbv_identification_node: the node left the session");
