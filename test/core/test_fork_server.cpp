@@ -33,7 +33,10 @@ ForkedRun preparation(const std::vector<std::string>& words) {
   return [words] {
     if (words[0] == "exit") return std::stoi(words[1]);
     if (words[0] == "print") std::cout << words[1] << jobs;
-    if (words[0] == "crash") ::raise(SIGSEGV);
+    if (words[0] == "crash") {
+      ::signal(SIGSEGV, SIG_DFL);  // a sanitizer's handler would exit
+      ::raise(SIGSEGV);
+    }
     if (words[0] == "kill_server") ::kill(::getppid(), SIGKILL);
     if (words[0] == "hang" || words[0] == "kill_server") ::pause();
     return words[0] == "thread" ? kInherited : 0;
