@@ -165,6 +165,13 @@ int printComparisons(const ReportArguments& arguments) {
   return ExitCode::kPassed;
 }
 
+/// Whether options are given that only a comparison heeds; --figure also chooses doses.
+bool narrowsComparison(const ReportArguments& arguments) {
+  const bool figures = !arguments.measures.empty() && arguments.doses.empty();
+  return !arguments.factor.empty() || !arguments.baseline.empty() || figures ||
+         !arguments.csv.empty() || arguments.all;
+}
+
 int report(const ReportArguments& arguments) {
   struct Asked {
     bool given;
@@ -185,6 +192,8 @@ int report(const ReportArguments& arguments) {
     if (option.given) asked.push_back(&option);
   }
   if (asked.size() != 1) throw InputError("give one of " + core::joinText(names, ", "));
+  if (arguments.folders.empty() && narrowsComparison(arguments))
+    throw InputError("--factor, --baseline, --figure, --all and --csv belong to --compare");
   return asked.front()->answer(arguments);
 }
 

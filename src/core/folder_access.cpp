@@ -81,6 +81,8 @@ FileDescriptor openFolderIfThere(const fs::path& folder) {
   if (descriptor || errno == ENOENT) return descriptor;
   int reason = errno;
   std::error_code none;
+  const bool below_a_file = reason == ENOTDIR && !fs::exists(fs::symlink_status(folder, none));
+  if (below_a_file) return descriptor;
   if (fs::is_symlink(folder, none) && ::access(folder.c_str(), F_OK) != 0) reason = errno;
   if (fs::is_symlink(folder, none) && fs::is_directory(folder, none)) {
     throw InputError("'" + folder.string() + "' is a symbolic link to '" +

@@ -27,8 +27,8 @@ struct ExitCode {
 /// To be called first in every main function. Opens descriptors 0 to 2 on /dev/null where the
 /// caller closed them, so that no file of ours gets one of these numbers and receives what is
 /// printed. Ignores SIGPIPE and SIGXFSZ: a write to a closed pipe or beyond `ulimit -f` is an error
-/// with a message. A stop signal ends the program with a word and exit code 130, until
-/// catchStopSignals is called.
+/// with a message. Takes SIGCHLD back from a caller that ignores it. A stop signal ends the program
+/// with a word and exit code 130, until catchStopSignals is called.
 void prepareProgram();
 
 /// Ignores a signal, unless it has a handler already.

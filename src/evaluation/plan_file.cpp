@@ -62,7 +62,7 @@ void requireSameProgram(const PlanFile& plan) {
   if (plan.program != programSha256()) {
     throw core::InputError(where + "is another build (SHA-256 " + programSha256() +
                            ") than the one that planned (" + plan.program +
-                           "); expected the same program and libraries");
+                           "); expected the same program, libraries and plug-ins");
   }
   const std::string here = instructionSets();
   if (plan.instruction_sets == here) return;

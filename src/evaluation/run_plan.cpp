@@ -43,7 +43,7 @@ std::string hashProgram() {
   std::map<std::string, fs::path> parts = {{"", "/proc/self/exe"}};
   ::dl_iterate_phdr(noteLibrary, &parts);
   for (const plugins::PluginLibrary& plugin : plugins::findPlugins())
-    parts["plug-in " + plugin.file.string()] = plugin.file;
+    parts["plug-in " + core::sha256(core::readFile(plugin.file, "plug-in"))] = plugin.file;
   core::Sha256 hash;
   for (const auto& [name, path] : parts) hash.update(core::readFile(path, "program"));
   return hash.finish();

@@ -238,7 +238,7 @@ class Worker {
       if (changed.empty()) return "";
       return "it was planned with other files: " + changed +
              " changed; expected the same on every host" + again;
-    } catch (const core::InputError& error) {
+    } catch (const std::exception& error) {
       return std::string(error.what()) + again;
     }
   }

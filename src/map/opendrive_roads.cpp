@@ -318,6 +318,7 @@ std::optional<RoadPlace> OpenDriveRoads::locate(const Eigen::Vector2d& point, do
     if (std::abs(body.x()) > 1.0) continue;
     for (const auto& entry : road->sectionAt(s).widths) {
       const auto borders = road->borders(entry.first, s);
+      if (!borders) continue;  // a lane further in is missing
       const auto [low, high] = std::minmax(borders->first, borders->second);
       if (body.y() < low - kReach || body.y() > high + kReach) continue;
       const double turned = std::abs(

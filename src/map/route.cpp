@@ -139,7 +139,7 @@ void RouteProgress::update(const Eigen::Vector2d& position) {
 double RouteProgress::percent() const {
   const double percent = 100.0 * arc_length_ / route_->length();
   const bool complete = percent >= completion_percent_ && distance_to_end_ <= completion_distance_;
-  return complete ? 100.0 : std::min(percent, 100.0);
+  return complete ? 100.0 : std::min(percent, std::nextafter(100.0, 0.0));
 }
 
 namespace {

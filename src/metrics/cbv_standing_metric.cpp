@@ -65,9 +65,13 @@ class CbvStanding final : public Metric {
   void observe(const MetricTick& tick) override {
     travel_.observe(tick);
     if (!tick.snapshot.decision_tick) return;
+    std::map<std::string, Stand> present;  // a CBV that comes back has not stood meanwhile
     for (const CbvSighting& cbv : tick.cbvs) {
-      if (cbv.placed()) observeCbv(*cbv.vehicle, tick);
+      if (!cbv.placed()) continue;
+      Stand& stand = present.emplace(cbv.vehicle->id, stands_[cbv.vehicle->id]).first->second;
+      observeCbv(*cbv.vehicle, tick, stand);
     }
+    stands_ = std::move(present);
   }
 
   void report(MetricSink& sink) const override {
@@ -98,8 +102,7 @@ class CbvStanding final : public Metric {
     return nullptr;
   }
 
-  void observeCbv(const traffic::Vehicle& vehicle, const MetricTick& tick) {
-    Stand& stand = stands_[vehicle.id];
+  void observeCbv(const traffic::Vehicle& vehicle, const MetricTick& tick, Stand& stand) {
     const map::Route* route = routeOf(vehicle, tick);
     if (route != nullptr) {
       ++decisions_;

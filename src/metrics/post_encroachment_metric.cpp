@@ -88,9 +88,9 @@ class PostEncroachment final : public Metric {
     for (const auto& [id, cbv] : cbvs_) {
       if (cbv.seconds) {
         times.add(*cbv.seconds);
-        entries.push_back({{"vehicle_id", id},
-                           {"seconds", *cbv.seconds},
-                           {"first", std::string(cbv.ego_first ? "ego" : "cbv")}});
+        MetricEntry::value_type::second_type first = nullptr;  // of two that are there at once
+        if (*cbv.seconds > 0.0) first = std::string(cbv.ego_first ? "ego" : "cbv");
+        entries.push_back({{"vehicle_id", id}, {"seconds", *cbv.seconds}, {"first", first}});
       } else {
         entries.push_back({{"vehicle_id", id},
                            {"seconds", nullptr},

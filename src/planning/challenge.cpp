@@ -129,7 +129,11 @@ std::vector<SeenVehicle> Challenge::Parts::seenCbvs(
 /// crawls, has passed the ghost or leaves its corridor, or after kGhostTime.
 void Challenge::Parts::moveGhost(const std::string& id, const std::vector<SeenVehicle>& seen,
                                  Attack& attack) {
-  if (!attack.promised.empty()) attack.promised.erase(attack.promised.begin());
+  const auto rows =
+      static_cast<std::size_t>(std::lround(context.decision_period / traffic::kRolloutStep));
+  const std::size_t past = std::min(rows, attack.promised.size());
+  attack.promised.erase(attack.promised.begin(),
+                        attack.promised.begin() + static_cast<std::ptrdiff_t>(past));
   if (!attack.ghost) return;
   Ghost& ghost = *attack.ghost;
   const double braking = ghost.driver.brake(ghost.own, seen, context.decision_period);

@@ -127,16 +127,22 @@ class RecordedReader {
     if (known && row.step < tracks.back().end())
       throw refuse("vehicle '" + core::shortened(row.vehicle) +
                    "' goes back in time; rows of a vehicle must be in order");
+    std::size_t& end = ends_[{row.recording, row.vehicle}];
+    if (!known && end != 0 && end == row.step)
+      throw refuse("rows of vehicle '" + core::shortened(row.vehicle) +
+                   "' do not lie together; sort them by recording, vehicle and time");
     if (!known || row.step > tracks.back().end())
       tracks.push_back({row.vehicle, "", row.size.x(), row.size.y(), row.step, {}});
     tracks.back().states.push_back(row.state);
+    end = tracks.back().end();
   }
 
   std::string file_;
   std::size_t line_ = 1;
   Columns columns_;
   std::vector<Recording> recordings_;
-  std::map<std::string, std::size_t> places_;  ///< of recordings by name
+  std::map<std::string, std::size_t> places_;                        ///< of recordings by name
+  std::map<std::pair<std::string, std::string>, std::size_t> ends_;  ///< of vehicles [steps]
 };
 
 bool hasRecordedColumns(const fs::path& file) {

@@ -84,7 +84,11 @@ std::vector<std::string> evaluatePairs(const std::string& file) {
   std::string line;
   std::getline(stream, line);
   Columns columns;
-  for (const std::string& name : cellsOf(line)) columns.emplace(name, columns.size());
+  const std::vector<std::string> names = cellsOf(line);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!columns.emplace(names[i], i).second)
+      throw core::InputError(file + ":1: two columns are called '" + names[i] + "'");
+  }
   std::vector<std::string> results;
   for (std::size_t line_number = 2; std::getline(stream, line); ++line_number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;

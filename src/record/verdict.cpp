@@ -361,7 +361,7 @@ const metrics::EgoContact* decidingContact(const session::ScenarioOptions& optio
                                            const Verdict& verdict,
                                            const std::vector<metrics::EgoContact>& contacts) {
   if (contacts.empty()) return nullptr;
-  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
+  const bool excuses = options.verdict.excusesUnavoidable(options.fiercestMode());
   const auto decided = [&](const char* rule) {
     const auto& rules = verdict.decided_by;
     return std::find(rules.begin(), rules.end(), rule) != rules.end();

@@ -124,6 +124,11 @@ void validateEntry(const SteeringEntry& entry, const SteeredCbvs& cbvs) {
         "it changes nothing; expected one of profile, mode, objective, target_speed, choose, "
         "release, remove, place");
   }
+  if (entry.objective.empty() && entry.weight != 0.0)
+    throw InputError("'weight' is given; expected 'objective' beside it");
+  const bool has_place = !entry.lane.empty() || entry.position != 0.0 || entry.speed != 0.0;
+  if (entry.place.empty() && has_place)
+    throw InputError("'lane', 'position' or 'speed' is given; expected 'place' beside it");
   for (const SteeringRequest& request : requests) {
     if (SteeredCbvs::concerns(request.what)) cbvs.changeBy(request);
     const bool traffic = request.what == steered::kPlace || request.what == steered::kRemove;

@@ -190,6 +190,8 @@ TEST_F(BatchRobustness, RefusesAnUnknownPlannerAndWrongReportArguments) {
   EXPECT_FALSE(fs::exists(folder("results")));
   EXPECT_EQ(cdiff({"report"}), 3);
   expectOutput("give one of --compare A B, --doses DIR, ");
+  EXPECT_EQ(cdiff({"report", "--tables", folder("nothing"), "--csv", "out.csv"}), 3);
+  expectOutput("belong to --compare");
   EXPECT_EQ(cdiff({"report", "--tables", folder("nothing")}), 3);
   expectOutput("it has no matrix.yaml");
 }

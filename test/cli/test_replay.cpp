@@ -86,7 +86,7 @@ TEST_F(ReplayCommand, HasTheResultOfASafetyCriticalSessionOfTheDiffusionPlanner)
   EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0);
   EXPECT_FALSE(summary()["guidance"].is_null());
   const std::string session = core::readFile(live() / "session.yaml", "session");
-  EXPECT_NE(session.find("\n  cbv_conditioning: image\n"), std::string::npos) << session;
+  EXPECT_NE(session.find("\n  cbv_conditioning: \"image\"\n"), std::string::npos) << session;
   expectSameResult();
 }
 

@@ -298,6 +298,12 @@ TEST_F(PlayedSlurm, KeepsTheJobsOfACommandThatIsStoppedWhileTheyAreSubmitted) {
   EXPECT_EQ(cdiff(with({"--resume", "--engine", "print"})), 0) << output();
 }
 
+TEST_F(PlayedSlurm, EndsAJobThatWasTakenThoughItsSubmissionFailed) {
+  play("sbatch", "touch $D/queued\nexit 1");
+  EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("results"), "--engine", "slurm"}), 3);
+  EXPECT_FALSE(fs::exists(folder("queued"))) << output();
+}
+
 class WithoutSlurm : public test::EvaluateCommand {};
 
 TEST_F(WithoutSlurm, NamesTheProgramThatIsMissing) {

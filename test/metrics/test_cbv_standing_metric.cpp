@@ -61,6 +61,13 @@ TEST_F(CbvStandingMetric, StartsAnewAfterAMoveAndWhereTheRoadWasNotFree) {
   EXPECT_EQ(value("cbv_standing_free"), 0.0);
 }
 
+TEST_F(CbvStandingMetric, StartsAnewWhereTheVehicleWasNoCbvMeanwhile) {
+  drive(0, 20, 20, 0);
+  metrics_.observe(test::snapshot(20, {background("a", 20, 0, 0)}), nullptr);
+  drive(200, 240, 20, 0);
+  EXPECT_EQ(value("cbv_standing_free"), 0.0);
+}
+
 TEST_F(CbvStandingMetric, CountsACbvOnce) {
   drive(0, 80, 20, 0);
   drive(80, 82, 20, 3);

@@ -138,6 +138,15 @@ TEST(MinimumSpeed, LeavesOutTicksAndStretchesWithoutMovingTraffic) {
   EXPECT_EQ(speed.percents(), std::vector<double>({50.0}));
 }
 
+TEST(MinimumSpeed, CountsAnUnfinishedStretchOnlyWhereItIsTheLast) {
+  MinimumSpeed speed(100.0, 100);  // of 1 m each
+  const auto traffic = snapshot(0, {background("a", 0, 0, 10)});
+  for (double way = 0.0; way <= 96.0; way += 1.0) speed.observe(way, 5.0, traffic);
+  const std::size_t whole = speed.percents().size();
+  speed.observe(96.5, 5.0, traffic);
+  EXPECT_EQ(speed.percents().size(), whole);
+}
+
 TEST(MinimumSpeed, WithoutCheckpointsMeasuresNothing) {
   MinimumSpeed speed(100.0, 0);
   speed.observe(100.0, 5.0, snapshot(0, {background("a", 0, 0, 10)}));

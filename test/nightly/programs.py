@@ -37,7 +37,7 @@ class Folder:
 class Program:
     """A command whose processes carry a mark of their own; what they write goes into a file."""
 
-    started = []  # all whose folder is still there
+    started = []  # until their Folder goes
 
     def __init__(self, command, folder, **environment):
         self.mark = secrets.token_hex(8)

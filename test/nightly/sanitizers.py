@@ -66,7 +66,8 @@ def run(program, folder):
     """None when the program passes, else the end of what it wrote."""
     environment = {**environment_of(folder, SOURCE), **OPTIONS}
     # Not that of the caller, whose libraries, without sanitizer, would come before those that the program names.
-    environment["LD_LIBRARY_PATH"] = str(next(folder.rglob("libe2e_cdiff_libsumo.so")).parent)  # loaded by its name alone
+    library = next(folder.rglob("libe2e_cdiff_libsumo.so"), None)  # loaded by its name alone
+    environment["LD_LIBRARY_PATH"] = str(library.parent) if library else ""
     for options, text in (("TSAN_OPTIONS", DEADLOCKS), ("LSAN_OPTIONS", LEAKS)):
         suppressions = folder / f"{options}.txt"
         suppressions.write_text(text)

@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from source_copy import SourceCopy, environment_of, ninja  # noqa: E402
 
 # Limits of memory are for the libraries as they ship.
-AT_LEISURE = "*Memory*"
+LIMITED = "*Memory*"
 
 
 @dataclass
@@ -73,7 +73,7 @@ class Trial:
         """Whether a program ends with success within `limit` seconds; leaves failed cases in `failures`. `cases`: these alone."""
         environment = environment_of(self.build, self.root)
         environment.setdefault("E2E_CDIFF_DATA", str(self.source / ".." / "shared" / "data"))
-        chosen = ":".join(cases) if cases else "*-" + ":".join(filter(None, [program.left_out, AT_LEISURE]))
+        chosen = ":".join(cases) if cases else "*-" + ":".join(filter(None, [program.left_out, LIMITED]))
         command = [program.path, f"--gtest_filter={chosen}", "--gtest_fail_fast"]
         program.failures = []
         begin = time.monotonic()

@@ -348,6 +348,7 @@ TEST_F(SessionFaults, ScriptNamesATemporaryFolderThatIsNotThere) {
                  script("scenario:=crossing_straight", session_));
   EXPECT_LT(session_.endAfter(100.0), 100.0);
   EXPECT_EQ(session_.exitStatus(), 3) << session_.log();
+  EXPECT_EQ(timesInLog("TMPDIR is '/no_such_folder'"), 1U) << session_.log();
   EXPECT_FALSE(fs::exists(session_.results()));
 }
 

@@ -75,6 +75,13 @@ TEST_F(RecordedTraffic, NamesTheLineThatCannotBeRead) {
             std::string::npos);
 }
 
+TEST_F(RecordedTraffic, RefusesRowsThatAreSortedByTime) {
+  const std::string text = refusalOf(std::string(kHeader) +
+                                     "a,1,0,0,0,0,0,4,2\na,2,0,0,9,0,0,4,2\n"
+                                     "a,1,0.1,1,0,0,0,4,2\n");
+  EXPECT_NE(text.find(":4: rows of vehicle '1'"), std::string::npos) << text;
+}
+
 TEST_F(RecordedTraffic, ReadsTheFilesOfAFolder) {
   write(std::string(kHeader) + "A-1,1,0,0,0,0,0,4,2\n");
   core::writeFileAtomically(folder_.path() / "other.csv", "recording,vehicle\nA-1,1\n");

@@ -62,6 +62,11 @@ TEST_F(MetricFile, RefusesBoxesThatCannotBe) {
             std::string::npos);
 }
 
+TEST_F(MetricFile, RefusesTwoColumnsOfOneName) {
+  EXPECT_NE(errorOf("ttc_2d", "note,note," + std::string(kHeader)).find(":1: two columns"),
+            std::string::npos);
+}
+
 TEST_F(MetricFile, FindsColumnsByName) {
   const Lines lines = evaluate("ttc_2d",
                                "note,length_i,width_i,x_i,y_i,hx_i,hy_i,vx_i,vy_i,"

@@ -71,12 +71,16 @@ TEST(PlanFile, IsAHeaderAloneWithoutPlans) { EXPECT_TRUE(written(PlanLog(0.05)).
 TEST(PlanFile, NamesTheLineThatIsDamaged) {
   const test::TemporaryFolder scratch;
   const auto file = scratch.path() / "plans.csv";
-  std::ofstream(file) << plansCsv(logUntil(12)) << "a,0,x\n";
-  try {
-    readPlans(file);
-    FAIL() << "no error";
-  } catch (const core::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("plans.csv:5"), std::string::npos) << error.what();
+  const std::string row = "a,0,0,1,2,3,4";
+  for (const std::string& damaged :
+       {std::string("a,0,x\n"), row + ",1,2,3,x\n", row + ",1,2,3,4"}) {
+    std::ofstream(file) << plansCsv(logUntil(12)) << damaged;
+    try {
+      readPlans(file);
+      FAIL() << "no error: " << damaged;
+    } catch (const core::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("plans.csv:5"), std::string::npos) << error.what();
+    }
   }
 }
 

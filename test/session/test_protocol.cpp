@@ -42,6 +42,11 @@ TEST_F(Protocol, CompletedNearTheEnd) {
   EXPECT_EQ(at(99.0, 0.0, 10.0), SessionStatus::kCompleted);
 }
 
+TEST_F(Protocol, NotCompletedBesideTheEnd) {
+  for (double x = 1.0; x < 110.0; x += 1.0)
+    ASSERT_EQ(at(x, 12.0, 10.0), SessionStatus::kRunning) << x;
+}
+
 // Ticks of 0.05 s: standing since tick 0, 3 s are over at tick 60.
 TEST_F(Protocol, BlockedAfterThreeSeconds) {
   for (int i = 0; i < 60; ++i) ASSERT_EQ(at(0.0, 0.0, 0.05), SessionStatus::kRunning) << i;

@@ -55,6 +55,8 @@ TEST(Steering, BadEntriesAreNamed) {
         Case{"[{at: 0, remove: car}]", "expected a later time"},
         Case{"[{at: 1, target_speed: 0.2}]", "[0.5, 40] m/s"},
         Case{"[{at: 1, objective: speedy, weight: 1}]", "'speed'"},
+        Case{"[{at: 1, profile: none, weight: 3}]", "expected 'objective'"},
+        Case{"[{at: 1, choose: a, lane: e_0}]", "expected 'place'"},
         Case{"[{at: 1, shade: red}]", "unknown key"}}) {
     EXPECT_NE(refusalOf(c.steering).find(c.reason), std::string::npos)
         << c.steering << ": " << refusalOf(c.steering);

@@ -10,9 +10,10 @@ namespace cdiff::evaluation {
 namespace {
 
 /// What a session reads of the environment, besides what a login sets.
-constexpr const char* kVariables[] = {"E2E_CDIFF_ISA",    "E2E_CDIFF_SHARE",    "E2E_CDIFF_CACHE",
-                                      "ROS_PACKAGE_PATH", "ONEDNN_MAX_CPU_ISA", "SUMO_HOME",
-                                      "LD_LIBRARY_PATH"};
+constexpr const char* kVariables[] = {
+    "E2E_CDIFF_ISA",    "E2E_CDIFF_SHARE",    "E2E_CDIFF_CACHE",
+    "ROS_PACKAGE_PATH", "ONEDNN_MAX_CPU_ISA", "SUMO_HOME",
+    "LD_LIBRARY_PATH",  "CMAKE_PREFIX_PATH",  "E2E_CDIFF_PLUGINS"};
 /// Time between the signal and the end of a task [s].
 constexpr int kNotice = 60;
 

@@ -127,7 +127,7 @@ void MinimumSpeed::observe(double arc_length, double ego_speed,
 std::vector<double> MinimumSpeed::percents() const {
   constexpr double kRouteEnd = 0.95;  // share of the route; its last meters are not always driven
   std::vector<double> percents = percents_;
-  const bool ended = passed_ < checkpoints_ && arc_length_ > kRouteEnd * length_;
+  const bool ended = passed_ + 1 == checkpoints_ && arc_length_ > kRouteEnd * length_;
   if (ended && open_.background > 0.0) percents.push_back(100.0 * open_.ego / open_.background);
   return percents;
 }

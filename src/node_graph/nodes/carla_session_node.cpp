@@ -150,7 +150,11 @@ int CarlaSessionNode::run() {
     return finish();
   } catch (const std::exception& error) {  // a disk that is full, for example
     handBack();
-    writeExitCode(results_, core::ExitCode::kRunTimeError);
+    try {
+      writeExitCode(results_, core::ExitCode::kRunTimeError);
+    } catch (const core::Error&) {
+      // What went wrong first is what counts.
+    }
     throw core::Error(error.what());
   }
 }
@@ -329,11 +333,8 @@ int runCarlaSession(StopSignal& stop) {
   try {
     requireHeededLaunchArguments();
     return runNodeObject<CarlaSessionNode>(parameters, stop);
-  } catch (const core::InputError&) {
-    writeRefusal(parameters.text("results"));
-    throw;
-  } catch (const core::Error&) {
-    writeRefusal(parameters.text("results"), core::ExitCode::kRunTimeError);
+  } catch (const core::Error& error) {
+    writeRefusal(parameters.text("results"), core::failureOf(error).exit_code);
     throw;
   }
 }

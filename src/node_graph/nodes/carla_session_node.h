@@ -32,7 +32,8 @@ class CarlaSessionNode {
   CarlaSessionNode(const Parameters& parameters, StopSignal& stop);
 
   /// Runs the session to its end and returns the exit code. Throws as CarlaLink::waitForBridge
-  /// does, and InputError for a map or a route that cannot be driven.
+  /// does, InputError for a map or a route that cannot be driven, and Error where the session broke
+  /// off, once CARLA drives its vehicles again and the exit code is written.
   int run();
 
  private:

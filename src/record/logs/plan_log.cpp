@@ -207,9 +207,11 @@ std::optional<PlanRow> rowOf(std::string_view line) {
   const auto tick = core::parseNumber(cells[1]);
   const auto seconds = core::parseNumber(cells[2]);
   const auto planned = waypointOf(cells, 3);
-  if (!tick || *tick < 0.0 || !seconds || !planned) return std::nullopt;
-  return PlanRow{cells[0], static_cast<std::uint64_t>(*tick), *seconds, *planned,
-                 waypointOf(cells, 7)};
+  const auto driven = waypointOf(cells, 7);
+  const bool none = std::all_of(cells.begin() + 7, cells.end(),
+                                [](const std::string& cell) { return cell.empty(); });
+  if (!tick || *tick < 0.0 || !seconds || !planned || (!driven && !none)) return std::nullopt;
+  return PlanRow{cells[0], static_cast<std::uint64_t>(*tick), *seconds, *planned, driven};
 }
 
 }  // namespace
@@ -240,10 +242,10 @@ std::vector<PlanRow> readPlans(const std::filesystem::path& file) {
   }
   std::vector<PlanRow> rows;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const auto row = rowOf(lines[i].text);
+    const auto row = lines[i].ended ? rowOf(lines[i].text) : std::nullopt;
     if (!row) {
       throw core::InputError(file.string() + ":" + std::to_string(lines[i].line) +
-                             ": no row of plans");
+                             ": no whole row of plans");
     }
     rows.push_back(*row);
   }

@@ -69,7 +69,7 @@ def attempt(topic, kind, random, expected):
             time.sleep(random.uniform(0.0, 1.0))
             disturb(process, kind, random)
         failure = judge(session, results, NODES[topic], kind, expected)
-        return failure or ("nothing was sent" if disturber and "sent" not in disturber.text() else None)
+        return failure or ("nothing was sent" if disturber and "sent" not in disturber.text().splitlines() else None)
 
 
 def trials(random, count):
