@@ -92,18 +92,18 @@ TEST(Program, ASignalThatTheCallerIgnoresStaysIgnored) {
 }
 
 TEST(Program, ExitCodesOfChildrenAreSeenWhateverTheCallerIgnores) {
-  const auto exitCodeOfAChild = [] {
+  const auto codeOfChild = [] {
     return *runForked([] { return 7; }, 60.0, std::atomic<bool>{false}).exit_code;
   };
   EXPECT_EQ(inChild([&] {
               ::signal(SIGCHLD, SIG_IGN);
               prepareProgram();
-              return exitCodeOfAChild();
+              return codeOfChild();
             }),
             7);
   EXPECT_EQ(inChild([&] {
               ::signal(SIGCHLD, SIG_IGN);  // and again by some library
-              return exitCodeOfAChild();
+              return codeOfChild();
             }),
             ExitCode::kRunTimeError);
 }
