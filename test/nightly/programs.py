@@ -16,6 +16,8 @@ ROOT = Path(__file__).resolve().parents[2]
 CDIFF = Path(os.environ.get("BUILD", ROOT / "build")) / "devel" / "lib" / "e2e_cdiff" / "cdiff"
 # Names a session's processes, those of SUMO and roslaunch among them, by an environment variable that children inherit.
 MARK = "E2E_CDIFF_GATE"
+# What roscpp itself says of a message of no use, with its sender.
+OF_ROSCPP = re.compile(r".*Exception thrown when deserializing message.*")
 RAW_TEXTS = re.compile(r"Traceback \(most recent|terminate called|Assertion|std::|json\.exception|core dumped")
 
 
@@ -168,7 +170,7 @@ def misbehavior(program, code, allowed):
         return f"exit code {code}: " + program.text()[-300:]
     if program.orphans:
         return f"processes left: {program.orphans}"
-    raw = RAW_TEXTS.search(program.text())
+    raw = RAW_TEXTS.search(OF_ROSCPP.sub("", program.text()))
     return f"raw text '{raw.group()}': {program.text()[-300:]}" if raw else None
 
 

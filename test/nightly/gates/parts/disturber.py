@@ -34,7 +34,7 @@ def main():
     rospy.init_node("disturber")
     print("waiting", flush=True)
     kind, name, _ = rostopic.get_topic_class(TOPIC, blocking=True)
-    sent = type("Sent", (Bytes, kind), {"__slots__": ["content"], "_slot_types": ["uint8[]"]})
+    sent = type("Sent", (Bytes, kind), {"__slots__": ["content"], "_slot_types": ["uint8[]"], "_has_header": False})
     output = rospy.Publisher(name, sent, queue_size=10)
 
     def disturb(message):
