@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// SUMO dies, freezes, refuses or is missing: every case is an error that says so, soon, and leaves
+// SUMO dies, freezes, refuses or is missing: every case is an error that says so and leaves
 // no process behind.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
