@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstring>
 
+#include "e2e_cdiff/CbvSelection.h"
 #include "node_graph/lockstep/message_gate.h"
 #include "node_graph/lockstep/participant_tracker.h"
 #include "node_graph/messages/message_checks.h"
@@ -37,6 +39,34 @@ TEST(MessageGate, WhoeverComesFirstCountsWhereAnyoneMaySend) {
   EXPECT_TRUE(gate.admits("ego/control", {}, "/mine"));
   EXPECT_FALSE(gate.admits("ego/control", {}, "/second"));
   EXPECT_TRUE(gate.admits("ego/control", {}, "/mine"));
+}
+
+/// What a node that listens to /selector reads of a selection of one vehicle that says it has
+/// `length`, as `caller` sends it.
+ros::VoidConstPtr readFrom(const std::string& caller, std::uint32_t length) {
+  msgs::CbvSelection selection;
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(selection));
+  const std::size_t assignments = bytes.size() - 3 * sizeof(length);  // before two other lists
+  selection.assignments.resize(1);
+  bytes.resize(ros::serialization::serializationLength(selection));
+  ros::serialization::OStream output(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(output, selection);
+  std::memcpy(&bytes[assignments], &length, sizeof(length));
+  const auto header = boost::make_shared<ros::M_string>();
+  (*header)["callerid"] = caller;
+  MessageReader<msgs::CbvSelection> reader({"/selector"}, [](const auto&) {});
+  return reader.deserialize({bytes.data(), static_cast<std::uint32_t>(bytes.size()), header});
+}
+
+TEST(MessageReader, ReadsTheBytesOfTheTopicsPublisherAlone) {
+  const auto assignments = [](const ros::VoidConstPtr& read) {
+    return boost::static_pointer_cast<const msgs::CbvSelection>(read)->assignments.size();
+  };
+  EXPECT_EQ(assignments(readFrom("/selector", 1)), 1U);
+  EXPECT_EQ(assignments(readFrom("/stranger", 1)), 0U);
+  // A list that the bytes do not hold.
+  EXPECT_THROW(readFrom("/selector", 1000), ros::serialization::StreamOverrunException);
+  EXPECT_EQ(assignments(readFrom("/stranger", 1000)), 0U);
 }
 
 TEST(MessageGate, RefusesTicksThatHaveNotBeen) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -75,6 +76,32 @@ class Connections {
 /// Name of a node without its namespace.
 std::string baseName(const std::string& node);
 
+/// Reads the messages of a topic's publishers (full names; none: of any sender). Another's becomes
+/// an empty message, its bytes unread: a list's length that is none makes roscpp fill memory for
+/// seconds. Nodelets of one process share what one of their threads has read, so it keeps no count.
+template <class Message>
+class MessageReader
+    : public ros::SubscriptionCallbackHelperT<const ros::MessageEvent<const Message>&> {
+ public:
+  using Base = ros::SubscriptionCallbackHelperT<const ros::MessageEvent<const Message>&>;
+
+  MessageReader(std::vector<std::string> publishers, const typename Base::Callback& callback)
+      : Base(callback), publishers_(std::move(publishers)) {}
+
+  ros::VoidConstPtr deserialize(
+      const ros::SubscriptionCallbackHelperDeserializeParams& params) override {
+    const auto caller = params.connection_header->find("callerid");
+    const bool known = publishers_.empty() || (caller != params.connection_header->end() &&
+                                               std::find(publishers_.begin(), publishers_.end(),
+                                                         caller->second) != publishers_.end());
+    if (!known) return boost::make_shared<Message>();
+    return Base::deserialize(params);
+  }
+
+ private:
+  std::vector<std::string> publishers_;
+};
+
 /// Who may send what to a node: each topic of a session has one publisher, known by roscpp's caller
 /// id, and no message is of a tick that has not been. Everything else is ignored, counted and
 /// reported. (A node that takes another's name is not noticed: ROS 1 has no identities.)
@@ -116,9 +143,8 @@ class MessageGate {
   template <class Message, class Callback>
   ros::Subscriber subscribe(ros::NodeHandle& node_handle, const std::string& topic,
                             const std::vector<std::string>& publishers, Callback callback) {
-    using Event = ros::MessageEvent<const Message>;
-    const boost::function<void(const Event&)> take = [this, topic, publishers,
-                                                      callback](const Event& event) {
+    const auto take = [this, topic, publishers,
+                       callback](const ros::MessageEvent<const Message>& event) {
       const std::string& caller = event.getPublisherName();
       const auto& message = event.getConstMessage();
       if (!admits(topic, publishers, caller) || !admitsTick(topic, caller, tickOf(*message)))
@@ -131,8 +157,11 @@ class MessageGate {
       }
     };
     constexpr std::uint32_t kQueueSize = 1000;
-    return node_handle.subscribe<const Event&>(topic, kQueueSize, take, {},
-                                               ros::TransportHints().tcpNoDelay());
+    ros::SubscribeOptions options(topic, kQueueSize, ros::message_traits::md5sum<Message>(),
+                                  ros::message_traits::datatype<Message>());
+    options.helper = boost::make_shared<MessageReader<Message>>(publishers, take);
+    options.transport_hints = ros::TransportHints().tcpNoDelay();
+    return node_handle.subscribe(options);
   }
 
  private:
