@@ -180,7 +180,9 @@ void CbvSelector::releaseSteered(const traffic::TrafficSnapshot& snapshot,
     const auto held = std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) {
       return slot.second.vehicleId() == change.before;
     });
-    if (held != slots_.end()) release(held->first, kSteered, selection);
+    if (held == slots_.end()) continue;
+    release(held->first, kSteered, selection);
+    never_again_.insert(change.before);  // in any life cycle, until it is chosen by hand
   }
 }
 

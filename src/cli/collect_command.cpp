@@ -178,14 +178,40 @@ evaluation::PlannedRun runOf(const CollectRequest& request,
   return run;
 }
 
+/// A command without what says which files a session leaves.
+std::vector<std::string> drivingWords(std::vector<std::string> words) {
+  const auto of_files = [](const std::string& word) {
+    return word == "--keep-bags" || word == "--no-images" || word == "--scenes";
+  };
+  words.erase(std::remove_if(words.begin(), words.end(), of_files), words.end());
+  return words;
+}
+
+/// Throws InputError where the session that is there was asked for with other settings; one without
+/// a record, of an earlier version, counts as it is.
+void requireSameSettings(const evaluation::PlannedRun& run, const fs::path& results) {
+  const fs::path file = evaluation::runFolder(results, run.id) / evaluation::kRecordFile;
+  const auto there = evaluation::readRecord(file);
+  if (!there || (there->scenario_sha256 == run.scenario_sha256 &&
+                 drivingWords(there->command.words) == drivingWords(run.command.words)))
+    return;
+  throw core::InputError("'" + results.string() + "' holds session " + run.id +
+                         " of other settings (" + file.string() +
+                         "); give another --results or another --first-seed");
+}
+
 /// The sessions that are still to be driven.
 std::vector<evaluation::PlannedRun> planOf(const std::vector<CollectRequest>& sessions) {
   std::vector<evaluation::PlannedRun> plan;
   evaluation::InputHasher hasher;
   for (const CollectRequest& request : sessions) {
     const auto settings = collection::resolveCollection(request);
-    if (!isDone(request, collection::sessionName(settings)))
-      plan.push_back(runOf(request, settings, hasher));
+    evaluation::PlannedRun run = runOf(request, settings, hasher);
+    if (isDone(request, run.id)) {
+      requireSameSettings(run, request.results);
+    } else {
+      plan.push_back(std::move(run));
+    }
   }
   std::cerr << sessions.size() << " sessions, " << sessions.size() - plan.size()
             << " of them already there\n";

@@ -64,13 +64,15 @@ class Drivers {
   std::vector<realism::Course> background_;
 };
 
-/// Levels that say who drives.
+/// Levels that say who drives; the method where it is not the default one.
 std::string driverOf(const evaluation::Factors& factors) {
+  const std::string usual = session::ScenarioOptions().method;
   std::vector<std::string> words;
-  for (const char* factor : {"variant", "cbv_planner", "mode", "guidance_profile"}) {
+  for (const char* factor : {"variant", "cbv_planner", "mode", "method", "guidance_profile"}) {
     const auto found = factors.find(factor);
-    if (found != factors.end() && !found->second.empty())
-      words.push_back(fs::path(found->second).stem().string());
+    if (found == factors.end() || found->second.empty()) continue;
+    if (factor != std::string("method") || found->second != usual)
+      words.push_back(evaluation::levelName(factor, found->second));
   }
   return core::joinText(words, ", ");
 }

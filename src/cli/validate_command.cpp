@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/scenario_keys.h"
+#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "map/lane_graph.h"
@@ -79,7 +80,7 @@ bool validateOne(const std::string& scenario_name, const ValidateArguments& argu
   } catch (const core::InputError& error) {
     const std::string text = error.what();
     const bool named = text.rfind(std::filesystem::absolute(scenario_name).string() + ":", 0) == 0;
-    std::cerr << "cdiff: " << (named ? "" : scenario_name + ": ") << text << "\n";
+    std::cerr << "cdiff: " << core::plainText((named ? "" : scenario_name + ": ") + text) << "\n";
     return false;
   }
 }

@@ -91,25 +91,53 @@ std::string sharesText(const std::vector<Answer>& answers, const std::string& dr
          "\n  ... also half a second earlier and later: " + count(shifted) + "\n";
 }
 
+/// Answers for each session of a batch, as rows of a table.
+struct AnswerTable {
+  std::string csv;
+  std::vector<Answer> answers;
+  int exit_code = ExitCode::kPassed;  ///< of sessions that could not be asked
+};
+
+void addSession(AnswerTable& table, const fs::path& folder, const WhatIfArguments& arguments) {
+  for (Answer& answer : answersOf(folder, arguments, core::catchStopSignals())) {
+    std::vector<std::string> cells = what_if::answerCells(answer);
+    cells.insert(cells.begin(), folder.filename().string());
+    table.csv += core::csvRow(cells);
+    table.answers.push_back(std::move(answer));
+  }
+}
+
+/// Sessions of a batch that cannot be repeated are named and left out.
+void addSessionOrName(AnswerTable& table, const fs::path& folder,
+                      const WhatIfArguments& arguments) {
+  try {
+    addSession(table, folder, arguments);
+  } catch (const core::Interrupted&) {
+    throw;
+  } catch (const core::Error& error) {
+    std::cerr << "cdiff: " << error.what() << "; this session is left out\n";
+    const bool input = dynamic_cast<const InputError*>(&error) != nullptr;
+    if (table.exit_code != ExitCode::kRunTimeError)
+      table.exit_code = input ? ExitCode::kBadInput : ExitCode::kRunTimeError;
+  }
+}
+
 int askAll(const WhatIfArguments& arguments) {
-  const std::atomic<bool>& stop = core::catchStopSignals();
   const fs::path result = arguments.result;
   std::vector<std::string> head = what_if::answerHead();
   head.insert(head.begin(), "run");
-  std::string csv = core::csvRow(head);
-  std::vector<Answer> all;
-  for (const fs::path& folder : record::sessionFolders(result)) {
-    for (Answer& answer : answersOf(folder, arguments, stop)) {
-      std::vector<std::string> cells = what_if::answerCells(answer);
-      cells.insert(cells.begin(), folder.filename().string());
-      csv += core::csvRow(cells);
-      all.push_back(std::move(answer));
-    }
+  AnswerTable table{core::csvRow(head), {}};
+  const std::vector<fs::path> folders = record::sessionFolders(result);
+  for (const fs::path& folder : folders) {
+    if (folders.size() == 1)
+      addSession(table, folder, arguments);
+    else
+      addSessionOrName(table, folder, arguments);
   }
   const std::string label = arguments.driver.label();
-  core::writeOwnFile(result / ("what_if_" + core::fileName(label) + ".csv"), csv);
-  std::cout << sharesText(all, label);
-  return ExitCode::kPassed;
+  core::writeOwnFile(result / ("what_if_" + core::fileName(label) + ".csv"), table.csv);
+  std::cout << sharesText(table.answers, label);
+  return table.exit_code;
 }
 
 int whatIf(const WhatIfArguments& arguments) {

@@ -235,6 +235,12 @@ CollectSettings resolveCollection(const CollectRequest& request) {
   }
   settings.scenario.validate();
   settings.collection.validate();
+  if ((request.images || request.scenes) &&
+      std::abs(settings.scenario.decision_period - traffic::kRolloutStep) > 1e-9) {
+    throw core::InputError("key 'decision_period' is " +
+                           core::formatNumber(settings.scenario.decision_period) +
+                           " s; samples and scenes need 0.1 s");
+  }
   return settings;
 }
 

@@ -124,6 +124,15 @@ PolicyPlans::PolicyPlans(const std::string& model, std::int64_t count,
       choice_(static_cast<std::uint64_t>(setup.options().seed), "policy_plans_choice") {
   if (!model_.architecture.takesRoute())
     throw core::InputError("collection.policy_plans: model '" + model + "' takes no route");
+  const diffusion::Architecture samples;
+  if (model_.architecture.horizon != samples.horizon ||
+      model_.architecture.image_width != samples.image_width ||
+      model_.architecture.image_height != samples.image_height ||
+      model_.architecture.route_points != samples.route_points) {
+    throw core::InputError("collection.policy_plans: model '" + model +
+                           "' has another horizon, image size or number of route points than the "
+                           "samples");
+  }
 }
 
 std::vector<Rollout> PolicyPlans::plansFor(const learning::DrivingSample& sample) {

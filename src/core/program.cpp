@@ -13,6 +13,7 @@
 #include <iostream>
 #include <new>
 
+#include "core/markup.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {
@@ -142,7 +143,7 @@ int reportFailure(const std::function<int()>& call) {
     return call();
   } catch (const std::exception& error) {
     const Failure failure = failureOf(error);
-    std::cerr << "cdiff: " << failure.text << "\n";
+    std::cerr << "cdiff: " << plainText(failure.text) << "\n";
     return failure.exit_code;
   }
 }

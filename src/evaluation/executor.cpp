@@ -20,7 +20,7 @@ void Executor::announce() {
   orderQueue(now_);
   informCaller();
   for (const std::size_t index : now_) {
-    core::OutputFolder::requireFree(folderOf(index), {"record.json", "scenario.yaml", "log.txt"});
+    core::OutputFolder::requireFree(folderOf(index), {kRecordFile, "scenario.yaml", "log.txt"});
     queue_.push_back(plan_[index].id);
   }
   writeRecords();
@@ -46,7 +46,7 @@ void Executor::refuseRenamed() const {
   }
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(options_.results / "runs", none)) {
-    const auto record = readRecord(entry.path() / "record.json");
+    const auto record = readRecord(entry.path() / kRecordFile);
     const auto planned = record ? ids.find(record->factors) : ids.end();
     if (planned == ids.end() || planned_ids.count(record->id) != 0) continue;
     throw core::InputError("'" + entry.path().string() + "' holds the run that is called '" +
@@ -82,7 +82,7 @@ bool Executor::isChosen(std::size_t index) const {
 /// Whether the result of an earlier batch stands; else, of a chosen run, the cause to run it again
 /// is counted.
 bool Executor::staysOrIsCounted(std::size_t index) {
-  const auto earlier = readRecord(folderOf(index) / "record.json");
+  const auto earlier = readRecord(folderOf(index) / kRecordFile);
   if (!earlier) return false;
   std::string cause = causeToRepeat(*earlier, plan_[index]);
   const std::string& result = plan_[index].command.result;
@@ -111,7 +111,7 @@ void Executor::informCaller() const {
 void Executor::writeRecords() const {
   std::deque<std::size_t> missing = now_;
   for (const std::size_t index : later_) {
-    if (!fs::exists(folderOf(index) / "record.json")) missing.push_back(index);
+    if (!fs::exists(folderOf(index) / kRecordFile)) missing.push_back(index);
   }
   std::vector<std::string> names;
   for (const std::size_t index : missing) names.push_back(plan_[index].id);
@@ -124,7 +124,7 @@ void Executor::writeRecords() const {
 void Executor::writeRecord(std::size_t index) const {
   core::OutputFolder folder(folderOf(index));
   folder.write("scenario.yaml", plan_[index].scenario_text);
-  folder.write("record.json", recordJson(records_[index]));
+  folder.write(kRecordFile, recordJson(records_[index]));
 }
 
 std::vector<RunRecord> Executor::collect() {
@@ -132,7 +132,7 @@ std::vector<RunRecord> Executor::collect() {
     const auto ended = ended_.find(plan_[index].id);
     if (ended != ended_.end()) {
       records_[index] = ended->second;
-    } else if (const auto record = readRecord(folderOf(index) / "record.json")) {
+    } else if (const auto record = readRecord(folderOf(index) / kRecordFile)) {
       records_[index] = *record;
     }
   }

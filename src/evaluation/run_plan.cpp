@@ -214,7 +214,9 @@ class RunPlanner {
       session::requireLockstep(options);
       std::vector<PlannedRun> runs = {runOf(level.label, options)};
       // An override of the seed ranks above the matrix's seeds.
-      const bool overridden = !seeds.empty() && std::stoll(seeds.front()) != options.seed;
+      const bool overridden = std::any_of(
+          request.set.begin(), request.set.end(),
+          [](const std::string& assignment) { return assignment.rfind("seed=", 0) == 0; });
       for (std::size_t i = 1; i < seeds.size(); ++i) {
         if (!overridden) core::overrideOption("seed=" + seeds[i], "argument 'seed'", options);
         runs.push_back(runOf(level.label, options));
@@ -292,7 +294,7 @@ class RunPlanner {
       for (const std::string& factor : naming) {
         const std::string& level = run.factors.at(factor);
         const bool number = factor == "seed" || factor == "repetition";
-        parts.push_back(number ? factor + level : fs::path(level).stem().string());
+        parts.push_back(number ? factor + level : levelName(factor, level));
       }
       const std::string id = core::fileName(core::joinText(parts, "__"));
       run.id = id;
@@ -318,6 +320,11 @@ const std::vector<std::string>& factorNames() {
                                                  "mode",     "method",      "guidance_profile",
                                                  "variant",  "seed",        "repetition"};
   return names;
+}
+
+std::string levelName(const std::string& factor, const std::string& level) {
+  const bool file = core::endsWith(level, ".yaml") || level.find('/') != std::string::npos;
+  return file && factor != "variant" ? fs::path(level).stem().string() : level;
 }
 
 std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string& source) {

@@ -57,6 +57,9 @@ using Factors = std::map<std::string, std::string>;
 /// "seed", "repetition".
 const std::vector<std::string>& factorNames();
 
+/// A level as part of a name: "cut_in" of the file "my/cut_in.yaml", any other as it is.
+std::string levelName(const std::string& factor, const std::string& level);
+
 /// What a process of a batch is asked to do.
 struct RunCommand {
   /// Arguments of the program. One that begins with "{run}" has the folder of the run there, and

@@ -226,7 +226,7 @@ std::vector<RunRecord> readRecords(const fs::path& results) {
   std::vector<RunRecord> records;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(results / "runs", error)) {
-    const auto record = readRecord(entry.path() / "record.json");
+    const auto record = readRecord(entry.path() / kRecordFile);
     if (record && record->command.isSession()) records.push_back(*record);
   }
   if (records.empty()) {

@@ -39,7 +39,10 @@ struct SummaryFacts {
 /// that was steered by hand, which no table may hold.
 SummaryFacts readSummary(const std::string& text, const std::string& source);
 
-/// What happened to one planned run: record.json in its folder, written whole before the batch
+/// Name of a run's record in its folder.
+inline constexpr const char* kRecordFile = "record.json";
+
+/// What happened to one planned run: kRecordFile in its folder, written whole before the batch
 /// starts (not_run) and again after the run.
 struct RunRecord {
   std::string id;

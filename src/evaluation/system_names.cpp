@@ -3,10 +3,10 @@
 #include "evaluation/system_names.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 
 #include "core/text.h"
+#include "evaluation/run_plan.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -49,7 +49,7 @@ std::string modeText(const std::string& mode) {
 std::string levelWords(const std::string& factor, const std::string& level) {
   if (factor == "mode") return modeText(level);
   if (level.empty()) return "";
-  const std::string name = std::filesystem::path(level).stem().string();
+  const std::string name = levelName(factor, level);
   if (factor == "method") return "by method " + name;
   if (factor == "guidance_profile") return name == "none" ? "unguided" : "guided by " + name;
   return factor + " " + name;

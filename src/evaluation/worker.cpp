@@ -11,6 +11,7 @@
 
 #include "core/file.h"
 #include "core/folder_lock.h"
+#include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/process_pool.h"
 #include "core/program.h"
@@ -83,7 +84,8 @@ void describeEnd(RunRecord& record, const core::ProcessEnd& end, const fs::path&
   if (record.exit_code == ExitCode::kInterrupted || end.interrupted) record.status = "interrupted";
   const bool judged = record.command.isSession() && record.exit_code == ExitCode::kVerdictFailed;
   if (record.exit_code != ExitCode::kPassed && !judged) {
-    if (record.failed()) record.cause = causeOf(record.exit_code, facts.fault, folder / "log.txt");
+    if (record.failed())
+      record.cause = core::plainText(causeOf(record.exit_code, facts.fault, folder / "log.txt"));
     return;
   }
   if (facts.status.empty()) return describeWithoutSummary(record, facts.fault, folder);
@@ -95,19 +97,30 @@ void describeEnd(RunRecord& record, const core::ProcessEnd& end, const fs::path&
   record.measures = facts.measures;
 }
 
+/// Where the next folder of a run is made, so that it is in its place whole.
+fs::path nextFolder(const fs::path& results, const std::string& id) {
+  return results / kLeftBehindFolder / (".next." + id);
+}
+
 /// Gives a run a new folder with its scenario and its record, and moves the one that a silent host
 /// has, whose session may still write into it, to kLeftBehindFolder.
 void setAside(const fs::path& results, const std::string& id) {
   const fs::path old = runFolder(results, id);
   core::OutputFolder aside(core::OutputFolder(results).subfolder(kLeftBehindFolder));
+  core::OutputFolder next(aside.subfolder(nextFolder(results, id).filename().string()));
+  next.write("scenario.yaml", core::readFile(old / "scenario.yaml", "scenario"));
+  next.write(kRecordFile, core::readFile(old / kRecordFile, "record"));
   std::string name = id;
   for (int i = 2; fs::exists(aside.path() / name); ++i) name = id + "." + std::to_string(i);
-  const std::string scenario = core::readFile(old / "scenario.yaml", "scenario");
-  const std::string record = core::readFile(old / "record.json", "record");
   fs::rename(old, aside.subfolder(name));
-  core::OutputFolder fresh(old);
-  fresh.write("scenario.yaml", scenario);
-  fresh.write("record.json", record);
+  fs::rename(next.path(), old);
+}
+
+/// Puts the folder into its place that a worker had made which was killed between two renames.
+void finishSettingAside(const fs::path& results, const std::string& id) {
+  std::error_code none;  // then there is no record, and that is said
+  if (!fs::exists(runFolder(results, id)))
+    fs::rename(nextFolder(results, id), runFolder(results, id), none);
 }
 
 /// Arguments of the program, with the folders in the place of their names.
@@ -161,7 +174,7 @@ class Worker {
   fs::path folderOf(std::size_t index) const { return runFolder(options_.results, ids_[index]); }
 
   RunRecord recordAt(std::size_t index) const {
-    const fs::path file = folderOf(index) / "record.json";
+    const fs::path file = folderOf(index) / kRecordFile;
     if (auto record = readRecord(file)) return *record;
     throw core::InputError("'" + file.string() + "' is missing, but the run is planned" +
                            kPlanAgain);
@@ -193,14 +206,27 @@ class Worker {
     return true;
   }
 
+  /// Whether its record says that nothing is to be done, before we hold the lease: the worker that
+  /// holds it may be moving the run's folder.
+  bool looksDone(std::size_t index) const {
+    std::optional<RunRecord> seen;
+    try {
+      seen = recordAt(index);
+    } catch (const core::InputError&) {
+      return false;
+    }
+    return isDone(*seen);
+  }
+
   /// Whether the run is ours to do now. What another worker has waits in `taken_`.
   bool claim(std::size_t index) {
-    if (isDone(recordAt(index))) return false;
+    if (looksDone(index)) return false;
     std::shared_ptr<const core::Lease> lease = leases_.claim(ids_[index]);
     if (!lease) {
       taken_.push_back(index);
       return false;
     }
+    finishSettingAside(options_.results, ids_[index]);
     const RunRecord record = recordAt(index);  // as it is now that nobody else writes it
     if (isDone(record)) return false;
     if (lease->isFromAnotherHost())
@@ -221,7 +247,7 @@ class Worker {
     if (record.cause.empty()) return false;
     record.status = "error";
     record.exit_code = ExitCode::kBadInput;
-    core::writeOwnFile(folderOf(index) / "record.json", recordJson(record));
+    core::writeOwnFile(folderOf(index) / kRecordFile, recordJson(record));
     if (options_.ended) options_.ended(record);
     return true;
   }
@@ -255,7 +281,7 @@ class Worker {
     const bool again = record.failed() && died && !end.timed_out && !stop_;
     if (ours && again && record.attempts <= options_.retries) return true;
     if (ours) {
-      core::writeOwnFile(folderOf(end.job) / "record.json", recordJson(record));
+      core::writeOwnFile(folderOf(end.job) / kRecordFile, recordJson(record));
       if (options_.ended) options_.ended(record);
     } else {
       taken_.push_back(end.job);

@@ -68,6 +68,10 @@ void SceneExporter::write(const std::string& name, const std::string& text) {
 std::string SceneExporter::add(const std::filesystem::path& result, const std::string& name) {
   const RecordedScene scene = readScene(result, options_.scene);
   const std::string file = core::fileName(name) + endingOf(options_.format);
+  if (!files_.insert(file).second) {
+    throw core::InputError("'" + name + "' and another result would both be '" + file +
+                           "'; export them into folders of their own");
+  }
   if (file == kIndex) throw core::InputError("'" + name + "' is the name of the index");
   std::string report = file + ": " + std::to_string(scene.vehicles.size()) + " vehicles, " +
                        core::formatFixed(scene.duration(), 2) + " s\n";

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ class SceneExporter {
   std::optional<core::OutputFolder> folder_;
   std::map<std::string, std::string> networks_;  ///< file, by SHA-256 of the network
   std::map<std::string, std::string> rows_;      ///< of the index, by name
+  std::set<std::string> files_;                  ///< names of the scenes' files
 };
 
 }  // namespace cdiff::exchange

@@ -299,6 +299,8 @@ class EdgeRow {
                            edges_[i + 1] + "'" + successorsText(edges_[i]));
   }
 
+  static constexpr std::size_t kLongestChain = 9;  ///< a lane and internal lanes in a row
+
   /// Follows links through the junction after edge `i`; `route` starts with the lane left and ends
   /// with the lane reached.
   void follow(std::size_t i, std::size_t from, const std::vector<LaneIndex>& lanes) {
@@ -308,7 +310,7 @@ class EdgeRow {
       std::vector<LaneIndex> longer = lanes;
       if (next.internal) {
         longer.push_back(link.to);
-        follow(i, from, longer);
+        if (longer.size() <= kLongestChain) follow(i, from, longer);
         continue;
       }
       for (EdgeLane& lane : layers_[i + 1]) {
@@ -324,7 +326,8 @@ class EdgeRow {
     for (std::size_t i = 0; i < open.size(); ++i) {
       for (const LaneLink& link : network_.lane(open[i]).next) {
         const Lane& next = network_.lane(link.to);
-        if (next.internal) open.push_back(link.to);
+        if (next.internal && std::find(open.begin(), open.end(), link.to) == open.end())
+          open.push_back(link.to);
         if (!next.internal) found.push_back("'" + next.edge_id + "'");
       }
     }

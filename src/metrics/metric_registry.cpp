@@ -25,6 +25,7 @@ class Registry {
     for (MeasureDefinition& definition : descriptor.measures) {
       if (*definition.place == '\0') definition.place = defaultPlace(definition);
     }
+    requireNew(descriptor);
     const std::string source = descriptor.source;
     const std::vector<MeasureDefinition> measures = descriptor.measures;
     metrics_.add(std::move(descriptor), source);
@@ -82,14 +83,24 @@ class Registry {
     }
     for (const MeasureDefinition& definition : descriptor.measures)
       checkMeasure(definition, descriptor);
-    for (const MetricDescriptor& other : metrics()) {
-      if (other.name == descriptor.name) continue;  // metrics_ refuses it
-      for (const MeasureDefinition& known : other.measures) {
-        for (const MeasureDefinition& definition : descriptor.measures) {
-          if (std::string(known.name) == definition.name ||
-              std::string(known.place) == definition.place)
-            refuse("measure '" + std::string(definition.name) + "'", other, descriptor);
-        }
+  }
+
+  static bool sameNameOrPlace(const MeasureDefinition& one, const MeasureDefinition& other) {
+    return std::string(one.name) == other.name || std::string(one.place) == other.place;
+  }
+
+  /// Its places are filled in.
+  void requireNew(const MetricDescriptor& descriptor) const {
+    const std::vector<MeasureDefinition>& own = descriptor.measures;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const auto same = [&](const MeasureDefinition& one) { return sameNameOrPlace(one, own[i]); };
+      const std::string what = "measure '" + std::string(own[i].name) + "'";
+      if (std::any_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(i), same))
+        refuse(what, descriptor, descriptor);
+      for (const MetricDescriptor& other : metrics()) {
+        if (other.name == descriptor.name) continue;  // metrics_ refuses it
+        if (std::any_of(other.measures.begin(), other.measures.end(), same))
+          refuse(what, other, descriptor);
       }
     }
   }

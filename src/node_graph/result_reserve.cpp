@@ -21,8 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReserve = ".reserve";
-/// Trace of a session that ended with its process and kept nothing else.
-constexpr const char* kCutOffTrace = "trace_cut_off.csv";
 constexpr const char* kBag = "session.bag";
 
 /// Goes on where the disk is full: the writer has noted it, and the result will say so.
@@ -246,7 +244,7 @@ namespace {
 bool keepCutOffTrace(core::OutputFolder& folder) {
   const fs::path trace = folder.path() / "trace.csv.part";
   if (!core::isFile(trace)) return false;
-  fs::rename(trace, folder.claim(kCutOffTrace));
+  fs::rename(trace, folder.claim(record::kCutOffTrace));
   return true;
 }
 
@@ -265,7 +263,7 @@ std::string writeAbandonedResult(const session::SessionSetup& setup, const fs::p
   AbandonedTicks ticks(writer);
   if (recorded) showTicks(*recorded, {&ticks});
   AbandonedSession end = session;
-  if (has_trace) end.text += std::string("; ") + kCutOffTrace + " has its ticks until then";
+  if (has_trace) end.text += std::string("; ") + record::kCutOffTrace + " has its ticks until then";
   ticks.end(end);
   writer.finish(session.wall_seconds);
   removeReserve(folder);

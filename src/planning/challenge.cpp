@@ -63,8 +63,7 @@ struct Challenge::Parts {
 
   PlanningContext context;
   double least_delay;
-  RouteFollower follower;
-  std::uint64_t last_tick = 0;
+  EgoFollower follower;
   std::optional<traffic::Vehicle> ego;
   OwnMotion own;
   std::optional<DrivenPath> path;
@@ -86,7 +85,7 @@ struct Challenge::Parts {
 };
 
 Challenge::Challenge(const PlanningContext& context, const std::string& level)
-    : parts_(new Parts{context, leastDelay(level), {}, 0, {}, {}, {}, CarefulDriver(), {}, {}}) {}
+    : parts_(new Parts{context, leastDelay(level), {}, {}, {}, {}, CarefulDriver(), {}, {}}) {}
 
 Challenge::~Challenge() = default;
 
@@ -99,12 +98,8 @@ geometry::Polyline Challenge::Parts::egoLine() const {
 
 /// Its place on its line [m].
 double Challenge::Parts::followEgo(const traffic::TrafficSnapshot& snapshot) {
-  constexpr double kFastest = 40.0;  // [m/s]
-  const auto skipped = static_cast<double>(snapshot.tick - std::min(snapshot.tick, last_tick));
-  last_tick = snapshot.tick;
   if (context.ego_route == nullptr || context.ego_route->empty()) return 0.0;
-  follower.update(*context.ego_route, ego->state.position,
-                  kFastest * skipped * context.simulation_step);
+  follower.update(*context.ego_route, snapshot, context.simulation_step);
   return follower.arcLength();
 }
 

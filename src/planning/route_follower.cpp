@@ -64,4 +64,12 @@ void RouteFollower::update(const map::Route& route, const Eigen::Vector2d& posit
   arc_length_ = std::max(arc_length_, found);
 }
 
+void EgoFollower::update(const map::Route& route, const traffic::TrafficSnapshot& snapshot,
+                         double simulation_step) {
+  constexpr double kFastest = 40.0;  // [m/s]
+  const auto skipped = static_cast<double>(snapshot.tick - std::min(snapshot.tick, tick_));
+  tick_ = snapshot.tick;
+  follower_.update(route, snapshot.ego()->state.position, kFastest * skipped * simulation_step);
+}
+
 }  // namespace cdiff::planning

@@ -2,7 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstdint>
+
 #include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::planning {
 
@@ -36,6 +39,22 @@ class RouteFollower {
   double length_ = 0.0;
   Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+};
+
+/// Where the ego is on its route, for planners that are not called at decisions without a CBV: it
+/// may have come as far since as 40 m/s take it.
+class EgoFollower {
+ public:
+  /// Moves to the ego of the snapshot, which must have one with a finite state. `simulation_step`
+  /// [s] is the time between ticks.
+  void update(const map::Route& route, const traffic::TrafficSnapshot& snapshot,
+              double simulation_step);
+  /// As RouteFollower's [m].
+  double arcLength() const { return follower_.arcLength(); }
+
+ private:
+  RouteFollower follower_;
+  std::uint64_t tick_ = 0;  ///< of the last call
 };
 
 }  // namespace cdiff::planning

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "core/file.h"
@@ -29,13 +30,46 @@ SessionKey sessionOf(const MatchedJob& job) {
   return {job.run.factors.at("scenario"), job.run.factors.at("seed")};
 }
 
-std::string driverOf(const evaluation::PlannedRun& run) {
+/// What every row is called by: the variant, else planner and mode.
+std::string shortDriver(const evaluation::PlannedRun& run) {
   const std::string& variant = run.factors.at("variant");
   if (!variant.empty()) return variant;
   const std::string& name = run.factors.at("cbv_planner");
   const planning::PlannerDescriptor* planner = planners::findPlanner(name);
   return (planner == nullptr ? name : planner->title) + ", " + run.factors.at("mode");
 }
+
+/// Names of the drivers of runs: the short one, and the levels in which drivers that share it
+/// differ.
+class DriverNames {
+ public:
+  explicit DriverNames(const std::vector<evaluation::PlannedRun>& runs) {
+    for (const evaluation::PlannedRun& run : runs)
+      for (const char* factor : kFactors)
+        levels_[{shortDriver(run), factor}].insert(level(run, factor));
+  }
+
+  std::string of(const evaluation::PlannedRun& run) const {
+    std::string name = shortDriver(run);
+    for (const char* factor : kFactors) {
+      if (levels_.at({shortDriver(run), factor}).size() > 1)
+        name +=
+            std::string(", ") + factor + " " + evaluation::levelName(factor, level(run, factor));
+    }
+    return name;
+  }
+
+ private:
+  static constexpr const char* kFactors[] = {"cbv_planner", "mode", "method", "guidance_profile"};
+
+  static std::string level(const evaluation::PlannedRun& run, const std::string& factor) {
+    const auto found = run.factors.find(factor);
+    return found == run.factors.end() ? "" : found->second;
+  }
+
+  std::map<std::pair<std::string, std::string>, std::set<std::string>>
+      levels_;  ///< by name, factor
+};
 
 void requireOneEgo(const std::vector<evaluation::PlannedRun>& runs) {
   for (const evaluation::PlannedRun& run : runs) {
@@ -97,14 +131,19 @@ std::vector<MatchedJob> planMatched(const std::vector<evaluation::PlannedRun>& r
                                     const ContinuationOptions& options) {
   requireOneEgo(runs);
   std::vector<MatchedJob> jobs;
+  const DriverNames drivers(runs);
+  std::set<std::string> taken;  // ids of SUMO's jobs
   std::map<SessionKey, bool> with_sumo;
   for (const evaluation::PlannedRun& run : runs) {
     const std::string& planner = run.factors.at("cbv_planner");
-    MatchedJob job{driverOf(run), planner, runOf(run, planner, options)};
+    MatchedJob job{drivers.of(run), planner, runOf(run, planner, options)};
     if (with_sumo.emplace(sessionOf(job), true).second) {
       jobs.push_back({kSumoRow, "", runOf(run, kSumo, options)});
-      jobs.back().run.id =
+      const std::string id =
           core::fileName(run.factors.at("scenario") + "__seed" + run.factors.at("seed") + "__sumo");
+      jobs.back().run.id = id;
+      for (int i = 2; !taken.insert(jobs.back().run.id).second; ++i)
+        jobs.back().run.id = id + "__" + std::to_string(i);
     }
     jobs.push_back(std::move(job));
   }

@@ -101,7 +101,11 @@ class RecordedReader {
     row.recording = cells[columns_[kRecording]];
     row.vehicle = cells[columns_[kVehicle]];
     const double time = number(cells, kTime);
+    constexpr double kLongest = 1e7;  // [s]
     const double step = std::round(time / kStep);
+    if (std::abs(time) > kLongest)
+      throw refuse("time " + core::formatNumber(time) + " s; expected at most " +
+                   core::formatNumber(kLongest));
     if (step < 0.0 || std::abs(time - step * kStep) > 0.1 * kStep)
       throw refuse("time " + core::formatNumber(time) +
                    " s is no multiple of 0.1 s from 0 on; recorded traffic must have 10 rows a "
@@ -124,10 +128,10 @@ class RecordedReader {
   void append(const Row& row) {
     std::vector<Track>& tracks = recordingOf(row.recording).tracks;
     const bool known = !tracks.empty() && tracks.back().id == row.vehicle;
-    if (known && row.step < tracks.back().end())
+    std::size_t& end = ends_[{row.recording, row.vehicle}];
+    if (row.step < end)
       throw refuse("vehicle '" + core::shortened(row.vehicle) +
                    "' goes back in time; rows of a vehicle must be in order");
-    std::size_t& end = ends_[{row.recording, row.vehicle}];
     if (!known && end != 0 && end == row.step)
       throw refuse("rows of vehicle '" + core::shortened(row.vehicle) +
                    "' do not lie together; sort them by recording, vehicle and time");

@@ -205,7 +205,7 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::string& program, b
   if (core::OutputFolder::lists(folder, kWhatIfFolder) && core::isFolder(folder / kWhatIfFolder))
     core::OutputFolder(folder / kWhatIfFolder).clear();
   std::set<std::string> earlier(kSessionFiles.begin(), kSessionFiles.end());
-  earlier.insert({kExitCodeFile, kReserveFolder, kWhatIfFolder});
+  earlier.insert({kExitCodeFile, kCutOffTrace, kReserveFolder, kWhatIfFolder});
   folder_.remove(earlier);
   folder_.removeUnfinished();
 }

@@ -20,6 +20,8 @@ namespace cdiff::record {
 
 /// Folder of a session's result in which `cdiff what_if` keeps its answers.
 inline constexpr const char* kWhatIfFolder = "what_if";
+/// Trace of a session that ended with its process and kept nothing else.
+inline constexpr const char* kCutOffTrace = "trace_cut_off.csv";
 
 /// First line of the trace.
 inline constexpr const char* kTraceHeader = "tick,id,role,x,y,heading,speed,throttle,steer,brake\n";

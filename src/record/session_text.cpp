@@ -38,6 +38,8 @@ std::string rejectionText(const std::string& reason) {
       {cbv::kTooNear, "it is nearer to the ego than cbv.minimum_distance"},
       {cbv::kOtherLevel, "it drives above or below the ego"},
       {cbv::kOffLane, "it is on no lane of its direction"},
+      {cbv::kQueued, "it waits on a lane of the ego's route, in the same queue"},
+      {cbv::kContactAhead, "it would touch another vehicle within cbv.clear_time"},
       {cbv::kJunctionHeading, "it stands askew to the lanes of its junction"},
       {cbv::kOutOfView, "no point of the ego's route lies near and ahead of it"},
       {cbv::kNoWay, "no lanes lead it to the ego's route"},

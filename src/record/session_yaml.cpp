@@ -11,6 +11,7 @@
 #include "core/yaml_text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
+#include "session/steering_file.h"
 
 #ifndef E2E_CDIFF_VERSION
 #define E2E_CDIFF_VERSION "unknown"
@@ -163,15 +164,6 @@ namespace {
 
 constexpr const char* kScenarioLine = "scenario:\n";
 
-/// The scenario of session.yaml, which is written one level deeper than a scenario file.
-std::string scenarioText(const std::string& yaml) {
-  std::string text;
-  for (const std::string& line : core::splitText(yaml.substr(yaml.find(kScenarioLine)), '\n')) {
-    if (line.compare(0, 2, "  ") == 0) text += line.substr(2) + "\n";
-  }
-  return text;
-}
-
 }  // namespace
 
 std::map<std::string, std::string> sessionFacts(const std::string& yaml) {
@@ -191,12 +183,9 @@ std::map<std::string, std::string> sessionFacts(const std::string& yaml) {
 
 SessionFile readSessionYaml(const std::filesystem::path& file) {
   const std::string yaml = core::readFile(file, "session", core::kLargestOptionsFile);
-  if (yaml.find(kScenarioLine) == std::string::npos) {
-    throw core::InputError(file.string() +
-                           ": key 'scenario' is missing; expected what a session writes");
-  }
   SessionFile session{sessionFacts(yaml), {}};
-  core::loadOptions({file.string() + " (scenario)", scenarioText(yaml)}, session.scenario);
+  core::loadOptions({file.string() + " (scenario)", session::recordedScenario(yaml, file.string())},
+                    session.scenario);
   return session;
 }
 

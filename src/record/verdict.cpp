@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <utility>
 
 #include "core/text.h"
@@ -131,12 +132,22 @@ class VerdictRules {
                                  "; allowed: " + core::joinText(allowed, ", ")));
   }
 
+  /// The value that a rule is on; where there is none, the rule is skipped.
+  std::optional<double> valueOrSkip(const std::string& rule,
+                                    const metrics::MeasureDefinition& definition) {
+    const metrics::Measure found = measures_.at(definition);
+    if (!found.value)
+      checks_.push_back({rule, CheckOutcome::kSkipped, rule + " is not defined: " + found.reason});
+    return found.value;
+  }
+
   void addCompletion() {
     const double least = rules_.minimum_route_completion;
-    const double percent = measures_.number(known::kRouteCompletion);
     if (least <= 0.0) return;
-    checks_.push_back(judged("route_completion", percent >= least,
-                             "the ego completed " + core::formatFixed(percent, 1) +
+    const auto percent = valueOrSkip("route_completion", known::kRouteCompletion);
+    if (!percent) return;
+    checks_.push_back(judged("route_completion", *percent >= least,
+                             "the ego completed " + core::formatFixed(*percent, 1) +
                                  " % of its route; at least " + core::formatNumber(least) +
                                  " % is asked"));
   }
@@ -144,9 +155,10 @@ class VerdictRules {
   void addDistance() {
     const double least = rules_.minimum_ego_distance;
     if (least <= 0.0) return;
-    const double meters = measures_.number(known::kEgoDistance);
-    checks_.push_back(judged("ego_distance", meters >= least,
-                             "the ego drove " + core::formatFixed(meters, 1) + " m; at least " +
+    const auto meters = valueOrSkip("ego_distance", known::kEgoDistance);
+    if (!meters) return;
+    checks_.push_back(judged("ego_distance", *meters >= least,
+                             "the ego drove " + core::formatFixed(*meters, 1) + " m; at least " +
                                  core::formatNumber(least) + " m is asked"));
   }
 
@@ -179,18 +191,21 @@ class VerdictRules {
 
   void addScore() {
     if (rules_.minimum_driving_score <= 0.0) return;
-    const double score = measures_.number(known::kDrivingScore);
-    checks_.push_back(judged("driving_score", score >= rules_.minimum_driving_score,
+    const auto score = valueOrSkip("driving_score", known::kDrivingScore);
+    if (!score) return;
+    checks_.push_back(judged("driving_score", *score >= rules_.minimum_driving_score,
                              "the ego's driving score by " + measures_.protocol + " was " +
-                                 core::formatFixed(score, 1) + " %; at least " +
+                                 core::formatFixed(*score, 1) + " %; at least " +
                                  core::formatNumber(rules_.minimum_driving_score) + " % is asked"));
   }
 
   void addCollisions() {
     const double limit = rules_.maximum_ego_collisions;
     if (limit >= kNoLimit) return;
-    const std::size_t count = measures_.count(known::kEgoCollisions);
-    checks_.push_back(judged(known::kEgoCollisions.name, static_cast<double>(count) <= limit,
+    const auto value = valueOrSkip(known::kEgoCollisions.name, known::kEgoCollisions);
+    if (!value) return;
+    const auto count = static_cast<std::size_t>(*value);
+    checks_.push_back(judged(known::kEgoCollisions.name, *value <= limit,
                              "the ego had " + countText(count, "collision") + "; at most " +
                                  core::formatNumber(limit) + " allowed"));
   }
@@ -205,12 +220,8 @@ class VerdictRules {
   /// `none` is the limit that allows all.
   void addInfraction(const InfractionRule& rule, double limit, double none) {
     if (limit >= none) return;
+    if (!valueOrSkip(rule.name, rule.definition)) return;
     const metrics::Measure found = measures_.at(rule.definition);
-    if (!found.value) {
-      checks_.push_back({rule.name, CheckOutcome::kSkipped,
-                         std::string(rule.name) + " of the ego is not defined: " + found.reason});
-      return;
-    }
     const std::string unit = found.unit.empty() ? "" : " " + found.unit;
     checks_.push_back(judged(rule.name, *found.value <= limit,
                              std::string(rule.what) + ": " +
@@ -220,15 +231,11 @@ class VerdictRules {
 
   void addOffRoad() {
     const double limit = rules_.maximum_cbv_off_road_percent;
-    const metrics::Measure rate = measures_.at(known::kCbvOffRoad);
     if (limit >= 100.0) return;
-    if (!rate.value) {
-      checks_.push_back({"cbv_off_road", CheckOutcome::kSkipped,
-                         "the off-road rate of the CBVs is not defined: " + rate.reason});
-      return;
-    }
-    checks_.push_back(judged("cbv_off_road", *rate.value <= limit,
-                             "the CBVs were off the road " + core::formatFixed(*rate.value, 2) +
+    const auto rate = valueOrSkip("cbv_off_road", known::kCbvOffRoad);
+    if (!rate) return;
+    checks_.push_back(judged("cbv_off_road", *rate <= limit,
+                             "the CBVs were off the road " + core::formatFixed(*rate, 2) +
                                  " % of their time; at most " + core::formatNumber(limit) +
                                  " % allowed"));
   }

@@ -14,11 +14,10 @@ namespace {
 using core::InputError;
 using traffic::VehicleRole;
 
-constexpr double kFastestPace = 100.0;         // times real time
-constexpr double kTimeTolerance = 1e-6;        // [s]
-constexpr std::size_t kMostRequests = 1000;    // between two decisions
-constexpr std::uint64_t kMostSteps = 1000000;  // of one request
-constexpr const char* kGeneratedPrefix = "bg_";
+constexpr double kFastestPace = 100.0;                 // times real time
+constexpr double kTimeTolerance = 1e-6;                // [s]
+constexpr std::size_t kMostRequests = 1000;            // between two decisions
+constexpr std::uint64_t kMostSteps = 1000000;          // of one request
 constexpr auto kLook = std::chrono::milliseconds(20);  // between looks at a paused session
 
 std::vector<std::string> idsOf(const VehicleRoles& vehicles) {
@@ -254,11 +253,12 @@ void SessionControl::requirePlace(const PlacedVehicle& vehicle,
                                   const VehicleRoles& vehicles) const {
   const std::string place = "place: vehicle '" + core::shortened(vehicle.id) + "'";
   if (vehicles.count(vehicle.id) != 0) throw InputError(place + " is there already");
-  const bool taken = vehicle.id == traffic::kEgoId || vehicle.id.rfind(kGeneratedPrefix, 0) == 0;
+  const bool taken =
+      vehicle.id == traffic::kEgoId || vehicle.id.rfind(simulation::kGeneratedPrefix, 0) == 0;
   if (taken || core::fileName(vehicle.id) != vehicle.id) {
     throw InputError(place + "; expected an id of letters, digits, '_', '-' and '.' other than '" +
                      std::string(traffic::kEgoId) + "', and not beginning with '" +
-                     kGeneratedPrefix + "'");
+                     simulation::kGeneratedPrefix + "'");
   }
   requireLane(vehicle);
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::session {
@@ -33,23 +34,6 @@ std::vector<SteeringEntry> recordedSteering(const fs::path& summary) {
     throw InputError(place + ": no steering can be read from it: " + error.what() +
                      "; expected the summary.json of a session of this version");
   }
-}
-
-/// The resolved scenario in a session.yaml, whose last group it is.
-std::string scenarioText(const fs::path& file) {
-  const std::string text = core::readFile(file, "session record", core::kLargestOptionsFile) + "\n";
-  const std::string head = "\nscenario:\n";
-  const std::size_t found = text.find(head);
-  if (found == std::string::npos)
-    throw InputError("'" + file.string() + "': expected the group 'scenario' of a session record");
-  std::string scenario;
-  for (std::size_t begin = found + head.size(); begin + 2 < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    if (end == std::string::npos || text.compare(begin, 2, "  ") != 0) break;
-    scenario += text.substr(begin + 2, end - begin - 1);
-    begin = end + 1;
-  }
-  return scenario;
 }
 
 }  // namespace
@@ -118,12 +102,26 @@ void requireSameSession(const fs::path& source, const SteeredSession& recorded,
                    ", which may drive otherwise; repeat it with that version" + as_list);
 }
 
+std::string recordedScenario(const std::string& text, const std::string& file) {
+  const std::string head = "\nscenario:\n";
+  const std::size_t found = text.find(head);
+  if (found == std::string::npos)
+    throw InputError(file + ": key 'scenario' is missing; expected what a session writes");
+  std::string scenario;
+  for (const std::string& line : core::splitText(text.substr(found + head.size()), '\n')) {
+    if (line.compare(0, 2, "  ") != 0) break;
+    scenario += line.substr(2) + "\n";
+  }
+  return scenario;
+}
+
 std::string steeredScenario(const fs::path& result) {
   const std::vector<SteeringEntry> entries = recordedSteering(result / kSummary);
   if (entries.empty()) throw InputError("'" + result.string() + "': nobody steered this session");
   const fs::path file = result / "session.yaml";
   ScenarioOptions options;
-  core::loadOptions({file.string(), scenarioText(file)}, options);
+  const std::string record = core::readFile(file, "session record", core::kLargestOptionsFile);
+  core::loadOptions({file.string(), recordedScenario(record, file.string())}, options);
   options.steering.clear();
   options.name += "_steered";
   std::string text = core::dumpOptions(options);

@@ -33,6 +33,10 @@ SteeredSession steeredSession(const std::filesystem::path& source);
 void requireSameSession(const std::filesystem::path& source, const SteeredSession& recorded,
                         const ScenarioOptions& options, const std::string& version);
 
+/// The resolved scenario in the text of a session.yaml, whose last group it is, as YAML. Throws
+/// InputError naming `file` where it has none.
+std::string recordedScenario(const std::string& text, const std::string& file);
+
 /// The scenario that repeats the session of a result folder with what was steered in it: the
 /// resolved scenario with the list `steering`, an entry a line, as YAML. Throws InputError as
 /// readSteering, and for a folder without session.yaml.

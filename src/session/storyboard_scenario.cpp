@@ -211,6 +211,8 @@ std::shared_ptr<const storyboard::Play> readPlay(const StoryboardOptions& option
   if (options.file.empty()) return nullptr;
   Scenario scenario = storyboard::readScenario(options.file, options.ignore_unsupported);
   const std::string ego = egoOf(scenario).name;
+  requireUsableNames(scenario, egoOf(scenario));
+  requirePlaces(scenario, egoOf(scenario));
   const std::string text = core::readFile(import.source, "network");
   std::optional<map::OpenDriveRoads> roads;
   if (text.find("<OpenDRIVE") != std::string::npos) roads.emplace(text, import.source.string());

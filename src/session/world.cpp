@@ -106,13 +106,14 @@ void BackgroundTraffic::refill(const Vehicle* ego, const DrivenVehicles& driven,
   }
 }
 
-/// All vehicles but those that are too far from `center`, which leave.
+/// All vehicles but generated ones that are too far from `center`, which leave.
 std::vector<Vehicle> BackgroundTraffic::present(const Eigen::Vector2d& center,
                                                 const DrivenVehicles& driven) {
   std::vector<Vehicle> vehicles;
   for (const SimulatedVehicle& vehicle : simulator_.vehicles()) {
     const double distance = (vehicle.state.position - center).norm();
-    if (distance <= setup_.options().traffic.forget_distance || driven.contain(vehicle.id))
+    if (distance <= setup_.options().traffic.forget_distance || driven.contain(vehicle.id) ||
+        vehicle.id.rfind(simulation::kGeneratedPrefix, 0) != 0)
       vehicles.push_back(simulation::asBackground(vehicle));
     else
       simulator_.remove(vehicle.id);

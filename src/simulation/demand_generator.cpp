@@ -245,7 +245,7 @@ std::optional<DemandVehicle> DemandGenerator::tryStart(
   if (!speed) return std::nullopt;
   insertion.speed = *speed;
   DemandVehicle vehicle;
-  vehicle.id = "bg_" + std::to_string(count_++);
+  vehicle.id = kGeneratedPrefix + std::to_string(count_++);
   vehicle.edges = edges_.ids(router_.route(start.lane, start.front, kRouteLength, random_, key));
   vehicle.depart_position = start.front;
   vehicle.depart_lane = lane.index;

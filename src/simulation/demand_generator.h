@@ -79,6 +79,9 @@ struct DemandVehicle {
   traffic::VehicleDimensions dimensions;
 };
 
+/// Begins the ids of generated vehicles, and of no others.
+inline constexpr const char* kGeneratedPrefix = "bg_";
+
 /// Generated demand: seeded background vehicles on lane-connected routes that start near the ego
 /// route, on both directions and every approach of its junctions; keeps `density` of them alive
 /// near the ego.

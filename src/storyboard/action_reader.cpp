@@ -198,9 +198,9 @@ Side readSide(const XoscElement& element, const char* ahead, const char* behind)
 
 SpeedLimits readLimits(const XoscElement& element) {
   SpeedLimits limits;
-  limits.acceleration = element.number("maxAcceleration", limits.acceleration);
-  limits.deceleration = element.number("maxDeceleration", limits.acceleration);
-  limits.speed = element.number("maxSpeed", limits.speed);
+  limits.acceleration = element.limit("maxAcceleration", limits.acceleration);
+  limits.deceleration = element.limit("maxDeceleration", limits.acceleration);
+  limits.speed = element.limit("maxSpeed", limits.speed);
   if (std::min({limits.acceleration, limits.deceleration, limits.speed}) < 0.0)
     element.fail("expected limits of at least 0");
   return limits;
@@ -212,23 +212,25 @@ ActionWhat readDistance(const XoscElement& element, Reading&) {
   action.time_gap = element.has("timeGap");
   action.value = element.number(action.time_gap ? "timeGap" : "distance");
   action.freespace = element.flag("freespace", false);
+  action.along_lanes = Reading::isAlongLanes(element);
   action.continuous = element.flag("continuous", false);
   action.side = readSide(element, "leadingReferencedEntity", "trailingReferencedEntity");
   if (const auto limits = element.find("DynamicConstraints")) action.limits = readLimits(*limits);
   return action;
 }
 
-/// Its largest acceleration has no effect.
+/// Its largest acceleration has no effect. Distances count across the lanes, whatever the frame.
 ActionWhat readLateralDistance(const XoscElement& element, Reading&) {
   constexpr double kUsual = 1.0;  // [m/s] across the lanes, where only an acceleration is given
   LateralDistanceAction action;
   action.entity = element.text("entityRef");
+  Reading::isAlongLanes(element);
   if (element.has("distance")) action.value = element.number("distance");
   action.freespace = element.flag("freespace", false);
   action.continuous = element.flag("continuous", false);
   action.side = readSide(element, "leftToReferencedEntity", "rightToReferencedEntity");
   if (const auto limits = element.find("DynamicConstraints"))
-    action.speed = limits->number("maxSpeed", kUsual);
+    action.speed = limits->limit("maxSpeed", kUsual);
   return action;
 }
 
@@ -298,6 +300,7 @@ ActionWhat readParameter(const XoscElement& element, Reading&) {
   const bool adds = change.name().find("Add") == 0;
   if (modified)
     action.change = adds ? ParameterAction::Change::kAdd : ParameterAction::Change::kMultiply;
+  if (modified) change.number("value");
   action.value = change.text("value");
   return action;
 }

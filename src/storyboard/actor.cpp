@@ -286,6 +286,15 @@ void Actor::endTrajectory() {
   takeRoute(route ? std::make_shared<const map::Route>(*route) : nullptr);
 }
 
+/// Speed on the last part of a timed course [m/s]; `otherwise` where it has but one place.
+double Actor::lastSpeed(const Trajectory& course, double otherwise) {
+  const std::size_t count = course.times.size();
+  if (count < 2 || course.times[count - 1] <= course.times[count - 2]) return otherwise;
+  const Eigen::Vector2d way =
+      course.places[count - 1].pose.position - course.places[count - 2].pose.position;
+  return way.norm() / (course.times[count - 1] - course.times[count - 2]);
+}
+
 void Actor::advanceOnTrajectory(double time, double step, double meters) {
   Trajectory& course = *trajectory_;
   if (lateral_ && lateral_->stopped) return endTrajectory();
@@ -313,7 +322,10 @@ void Actor::advanceOnTrajectory(double time, double step, double meters) {
     reference_.elevation = from.elevation + share * (to.elevation - from.elevation);
   }
   speed_ = (reference_.pose.position - before).norm() / step;
-  if (next == course.times.size()) endTrajectory();
+  if (next == course.times.size()) {
+    speed_ = lastSpeed(course, speed_);  // not that of a step in whose midst the course ends
+    endTrajectory();
+  }
 }
 
 void Actor::advance(double time, double step) {

@@ -116,6 +116,7 @@ class Actor {
   void changeSpeed(double step);
   void advanceOnLanes(double meters, double step);
   void advanceStraight(double meters);
+  static double lastSpeed(const Trajectory& course, double otherwise);
   void advanceOnTrajectory(double time, double step, double meters);
   void endTrajectory();
 

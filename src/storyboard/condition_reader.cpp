@@ -27,12 +27,7 @@ void readValue(const XoscElement& element, EntityCondition& condition) {
 void readFrame(const XoscElement& element, EntityCondition& condition) {
   condition.freespace = element.flag("freespace", false);
   condition.lane_frame = element.flag("alongRoute", false);
-  if (element.has("coordinateSystem")) {
-    const std::size_t frame =
-        element.choice("coordinateSystem", {"entity", "lane", "road", "trajectory"});
-    if (frame == 3) Reading::refuse(element, "a distance along a trajectory");
-    condition.lane_frame = frame != 0;
-  }
+  if (element.has("coordinateSystem")) condition.lane_frame = Reading::isAlongLanes(element);
   if (element.has("relativeDistanceType")) {
     constexpr Along kTypes[] = {Along::kLongitudinal, Along::kLateral, Along::kStraight,
                                 Along::kStraight};

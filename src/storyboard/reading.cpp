@@ -82,6 +82,14 @@ void Reading::refuseAttributes(const XoscElement& element, const std::vector<con
     if (element.has(key)) refuse(element, std::string("the attribute '") + key + "'");
 }
 
+bool Reading::isAlongLanes(const XoscElement& element) {
+  if (!element.has("coordinateSystem")) return false;
+  const std::size_t frame =
+      element.choice("coordinateSystem", {"entity", "lane", "road", "trajectory"});
+  if (frame == 3) refuse(element, "a distance along a trajectory");
+  return frame != 0;
+}
+
 void Reading::ignore(const Unsupported& error) {
   if (!ignore_unsupported) throw error;
   const std::string text = error.what();

@@ -50,6 +50,9 @@ struct Reading {
   [[noreturn]] static void refuse(const XoscElement& element, const std::string& what);
   /// Throws Unsupported where the element has one of these attributes.
   static void refuseAttributes(const XoscElement& element, const std::vector<const char*>& keys);
+  /// Whether a distance of an element is measured along lanes or the road: the attribute
+  /// coordinateSystem; false without it. Throws Unsupported for one along a trajectory.
+  static bool isAlongLanes(const XoscElement& element);
   /// Keeps the text where what is not supported may be ignored, else throws it on.
   void ignore(const Unsupported& error);
 };

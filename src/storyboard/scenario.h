@@ -146,6 +146,7 @@ struct DistanceAction {
   double value = 0.0;
   bool time_gap = false;
   bool freespace = false;
+  bool along_lanes = false;  ///< else along the own heading
   bool continuous = false;
   Side side = Side::kPresent;
   std::optional<SpeedLimits> limits;  ///< nullopt: at once, wherever that is

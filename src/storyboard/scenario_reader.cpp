@@ -189,7 +189,8 @@ void readInit(const XoscElement& actions, Reading& reading, Scenario& scenario) 
   }
 }
 
-/// Every entity that is spoken of must be there, so that no session fails over a name.
+/// Every entity and parameter that is spoken of must be there, so that no session fails over a
+/// name.
 class NameCheck {
  public:
   explicit NameCheck(const Scenario& scenario) : scenario_(scenario) {}
@@ -208,6 +209,12 @@ class NameCheck {
     for (const Entity& one : scenario_.entities) known.push_back(one.name);
     throw core::InputError(source.text() + ": there is no entity '" + entity +
                            "'; expected one of {" + core::joinText(known, ", ") + "}");
+  }
+  void requireParameter(const std::string& name, const Source& source) const {
+    if (scenario_.parameters.count(name) != 0) return;
+    throw core::InputError(source.text() + ": '" + name +
+                           "' is declared neither among the parameters nor among the variables of "
+                           "the whole file");
   }
   void checkPlace(const Position& position) const {
     require(position.entity, position.source);
@@ -240,6 +247,13 @@ class NameCheck {
       require(meeting->master, action.source);
       for (const Position* place : {&meeting->master_target, &meeting->target}) checkPlace(*place);
     }
+    if (const auto* parameter = std::get_if<ParameterAction>(&what)) {
+      requireParameter(parameter->name, action.source);
+      const std::string& value = scenario_.parameters.at(parameter->name);
+      if (parameter->change != ParameterAction::Change::kSet && !core::parseNumber(value))
+        throw core::InputError(action.source.text() + ": '" + parameter->name + "' is '" +
+                               core::shortened(value) + "', which is no number to change");
+    }
     if (const auto* entity = std::get_if<EntityAction>(&what)) {
       require(entity->entity, action.source);
       if (entity->place) checkPlace(*entity->place);
@@ -250,9 +264,14 @@ class NameCheck {
     if (const auto* route = std::get_if<RouteAction>(&what))
       for (const Position& waypoint : route->waypoints) checkPlace(waypoint);
   }
+  /// One of scenario_runner's in the stop trigger, whose parameter is nobody's.
+  static bool isCriterion(const std::string& name) { return name.rfind("criteria_", 0) == 0; }
   void checkTrigger(const Trigger& trigger) const {
     for (const auto& group : trigger.groups) {
       for (const Condition& condition : group) {
+        const auto* const parameter = std::get_if<ParameterCondition>(&condition.what);
+        if (parameter != nullptr && !isCriterion(condition.name) && !isCriterion(parameter->name))
+          requireParameter(parameter->name, condition.source);
         const auto* const measured = std::get_if<EntityCondition>(&condition.what);
         if (measured == nullptr) continue;
         require(measured->other, condition.source);

@@ -120,14 +120,22 @@ double TrafficStage::alongDistance(const EntityCondition& condition, const std::
   const bool lateral = condition.along == Along::kLateral;
   const double found = std::abs(lateral ? difference.y() : difference.x());
   if (!condition.freespace || condition.other.empty()) return found;
+  return std::max(0.0, found - boxesBetween(entity, condition.other, lateral));
+}
+
+/// By how much the distance between two reference points exceeds that between the boxes, along or
+/// across the heading of the first [m].
+double TrafficStage::boxesBetween(const std::string& entity, const std::string& other,
+                                  bool lateral) const {
+  const MapPose& own = member(entity).reference;
   const Eigen::Vector2d forward = geometry::direction(own.pose.heading);
   const Eigen::Vector2d axis = lateral ? geometry::leftNormal(forward) : forward;
   const double centers =
-      std::abs(axis.dot(member(condition.other).state.position - member(entity).state.position));
-  const double extents = geometry::halfExtent(boxOf(entity), axis) +
-                         geometry::halfExtent(boxOf(condition.other), axis);
-  const double moved = std::abs(axis.dot(target - own.pose.position));
-  return std::max(0.0, found + centers - moved - extents);
+      std::abs(axis.dot(member(other).state.position - member(entity).state.position));
+  const double references =
+      std::abs(axis.dot(member(other).reference.pose.position - own.pose.position));
+  return references - centers + geometry::halfExtent(boxOf(entity), axis) +
+         geometry::halfExtent(boxOf(other), axis);
 }
 
 double TrafficStage::distance(const EntityCondition& condition, const std::string& entity) const {
@@ -210,7 +218,7 @@ std::optional<double> TrafficStage::valueOf(const EntityCondition& condition,
     case Measure::kDistance:
       return distance(condition, entity);
     case Measure::kHeadway:
-      if (own.state.speed <= 1e-3) return std::nullopt;
+      if (own.state.speed <= 1e-3) return kNever;
       return distance(condition, entity) / own.state.speed;
     case Measure::kTimeToCollision:
       return timeToCollision(condition, entity);
@@ -219,12 +227,24 @@ std::optional<double> TrafficStage::valueOf(const EntityCondition& condition,
   }
 }
 
+/// The same; nullopt also where a place that is relative to an entity is nowhere now, as beside one
+/// that has left its lanes.
+std::optional<double> TrafficStage::valueIfPlaced(const EntityCondition& condition,
+                                                  const std::string& entity) const {
+  if (!condition.place || condition.place->entity.empty()) return valueOf(condition, entity);
+  try {
+    return valueOf(condition, entity);
+  } catch (const core::InputError&) {
+    return std::nullopt;
+  }
+}
+
 bool TrafficStage::measured(const EntityCondition& condition, const std::string& entity) const {
   if (condition.measure == Measure::kCollision) return collides(condition, entity);
   if (!present(entity)) return false;
   for (const std::string& other : {condition.other, condition.place ? condition.place->entity : ""})
     if (!other.empty() && !present(other)) return false;
-  const auto value = valueOf(condition, entity);
+  const auto value = valueIfPlaced(condition, entity);
   return value && compareNumbers(condition.rule, *value, condition.value);
 }
 
@@ -258,9 +278,9 @@ void TrafficStage::change(const ParameterAction& action) {
   std::string& value = parameters_[action.name];
   const auto old = core::parseNumber(value);
   const auto operand = core::parseNumber(action.value);
-  if (action.change == ParameterAction::Change::kSet || !old || !operand) {
+  if (action.change == ParameterAction::Change::kSet) {
     value = action.value;
-  } else {
+  } else if (old && operand) {
     const bool add = action.change == ParameterAction::Change::kAdd;
     value = core::formatNumber(add ? *old + *operand : *old * *operand);
   }
@@ -307,9 +327,9 @@ double TrafficStage::excess(const DistanceAction& action, const std::string& ent
   EntityCondition gap;
   gap.other = action.entity;
   gap.along = Along::kLongitudinal;
+  gap.lane_frame = action.along_lanes;
   const double between = distance(gap, entity);
-  gap.freespace = action.freespace;
-  const double lengths = between - distance(gap, entity);
+  const double lengths = action.freespace ? boxesBetween(entity, action.entity, false) : 0.0;
   const Member& other = member(action.entity);
   const bool ahead = member(entity).reference.pose.toBody(other.reference.pose.position).x() <= 0.0;
   const bool to_be_ahead = side == Side::kPresent ? ahead : side == Side::kAheadOrLeft;
@@ -551,6 +571,7 @@ void TrafficStage::remove(const std::string& entity) {
     touched_[other].insert(entity);
   }
   present_.erase(entity);
+  planned_.erase(entity);  // it may come again
 }
 
 void TrafficStage::setPlanned(const std::string& entity, bool planned) {

@@ -71,8 +71,11 @@ class TrafficStage : public Stage {
   const map::Route* routeOf(const std::string& entity) const;
   static std::optional<double> ownValue(EntityCondition::Measure measure, const Member& own);
   std::optional<double> valueOf(const EntityCondition& condition, const std::string& entity) const;
+  std::optional<double> valueIfPlaced(const EntityCondition& condition,
+                                      const std::string& entity) const;
   bool measured(const EntityCondition& condition, const std::string& entity) const;
   double distance(const EntityCondition& condition, const std::string& entity) const;
+  double boxesBetween(const std::string& entity, const std::string& other, bool lateral) const;
   double alongDistance(const EntityCondition& condition, const std::string& entity,
                        const Eigen::Vector2d& target) const;
   double timeToCollision(const EntityCondition& condition, const std::string& entity) const;

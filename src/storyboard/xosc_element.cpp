@@ -77,8 +77,6 @@ std::string XoscElement::text(const char* key, const std::string& missing) const
 
 double XoscElement::number(const char* key) const {
   const std::string value = text(key);
-  constexpr double kInfinite = 1e300;  // stands for INF, which the format allows
-  if (value == "INF" || value == "inf") return kInfinite;
   const auto parsed = core::parseNumber(value);
   if (!parsed)
     fail(std::string("'") + key + "' is '" + core::shortened(value) + "'; expected a number");
@@ -87,6 +85,13 @@ double XoscElement::number(const char* key) const {
 
 double XoscElement::number(const char* key, double missing) const {
   return has(key) ? number(key) : missing;
+}
+
+double XoscElement::limit(const char* key, double missing) const {
+  constexpr double kInfinite = 1e300;
+  if (!has(key)) return missing;
+  const std::string raw = node_.attribute(key).value();
+  return raw == "INF" || raw == "inf" ? kInfinite : number(key);
 }
 
 int XoscElement::integer(const char* key) const {

@@ -35,6 +35,8 @@ class XoscElement {
   /// A finite number.
   double number(const char* key) const;
   double number(const char* key, double missing) const;
+  /// A number that may be INF, which stands for no limit.
+  double limit(const char* key, double missing) const;
   int integer(const char* key) const;
   int integer(const char* key, int missing) const;
   /// true or false, also as True and False, 1 and 0.

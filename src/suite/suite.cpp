@@ -45,7 +45,10 @@ class EntryReader {
  public:
   EntryReader(const fs::path& file, const YAML::Node& node) : file_(file), node_(node) {
     if (!node.IsMap()) fail("expected a map of keys");
-    for (const auto& entry : node) keys_.push_back(entry.first.as<std::string>());
+    for (const auto& entry : node) {
+      if (!entry.first.IsScalar()) fail("expected keys that are plain words");
+      keys_.push_back(entry.first.as<std::string>());
+    }
   }
 
   template <class Value>

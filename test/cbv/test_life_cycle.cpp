@@ -108,6 +108,17 @@ TEST(LifeCycle, WhoWasReleasedBySteeringCanBeChosenAgain) {
   EXPECT_EQ(again.assignments.size(), 1u);
 }
 
+TEST(LifeCycle, WhoWasReleasedBySteeringStaysReleasedWhereVehiclesAreChosenAgain) {
+  CbvOptions options;
+  options.life_cycle = "reselect";
+  CrossingWorld world(options, 1);
+  const auto car = fromSouth("car", -30.0, 9.0);
+  ASSERT_EQ(world.selector.update(crossingSnapshot(kFirst, 70.0, {car})).assignments.size(), 1u);
+  world.selector.update(
+      steered(crossingSnapshot(kFirst + 2, 70.0, {driven(car, 0)}), "release", "car"));
+  EXPECT_TRUE(world.selector.update(crossingSnapshot(kFirst + 4, 70.0, {car})).assignments.empty());
+}
+
 TEST(LifeCycle, OnlyTheNamedBecomeCbvs) {
   CbvOptions options;
   options.only = {"named"};

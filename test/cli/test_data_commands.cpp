@@ -188,6 +188,24 @@ TEST_F(DataCommands, ScenesAreCollectedOnceAndTrainedOn) {
   EXPECT_EQ(core::readFile(scene, "scene"), bytes);
 }
 
+TEST_F(DataCommands, CollectRefusesSessionsOfOtherSettings) {
+  const auto collect = [&](const char* seconds, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"collect",     "--scenarios", "arterial_exit",    "--results",
+                                      path("data"),  "--scenes",    "--duration",       seconds,
+                                      "--no-images", "--set",       "traffic.warm_up=5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return cdiff(words);
+  };
+  EXPECT_EQ(collect("6", {}), 0);
+  EXPECT_EQ(collect("6", {"--keep-bags"}), 0);
+  expectOutput("1 sessions, 1 of them already there");
+  for (const std::string other : {"traffic.warm_up=6", "collection.standing_share=0.5"}) {
+    EXPECT_EQ(collect("6", {"--set", other}), 3);
+    expectOutput("holds session arterial_exit_seed1 of other settings");
+  }
+  EXPECT_EQ(collect("7", {}), 3);
+}
+
 TEST_F(DataCommands, CurvesAreDrawnOrTheirFaultIsNamed) {
   fs::create_directories(path("model"));
   EXPECT_EQ(cdiff({"report", "--training", path("model")}), 3);

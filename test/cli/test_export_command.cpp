@@ -67,6 +67,13 @@ TEST_F(ExportCommand, WhatCannotBeIsRefusedAndNothingIsWritten) {
   EXPECT_FALSE(fs::exists(path("exported")));
 }
 
+TEST_F(ExportCommand, TwoSessionsOfOneFileNameAreRefused) {
+  fs::copy(path("cases/first"), path("cases/a b"), fs::copy_options::recursive);
+  fs::copy(path("cases/first"), path("cases/a_b"), fs::copy_options::recursive);
+  EXPECT_EQ(exportOf("cases", {"--format", "csv"}), kBadInput);
+  expectOutput("would both be 'a_b.csv'");
+}
+
 TEST_F(ExportCommand, AFileOfTheUsersStays) {
   fs::create_directory(path("exported"));
   core::writeFileAtomically(path("exported/first.csv"), "mine\n");

@@ -84,6 +84,16 @@ TEST_F(Messages, SourcingPutsCdiffInPathAndLeavesSumoHomeAlone) {
 }
 #endif
 
+TEST_F(Messages, ControlCharactersOfAFileDoNotReachTheTerminal) {
+  const std::string file = path("loud.yaml");
+  core::writeFileAtomically(file, "name: loud\nmode: \"\\e]0;mine\\a\\e[31mred\"\n");
+  for (const char* command : {"validate", "run"}) {
+    EXPECT_EQ(cdiff({command, file}), 3);
+    expectOutput("\uFFFD[31mred");
+    EXPECT_EQ(output().find('\x1b'), std::string::npos);
+  }
+}
+
 TEST_F(Messages, AModeThatIsNoneIsExplained) {
   EXPECT_EQ(cdiff({"run", "roundabout_cross", "--mode", "agressive"}), 3);
   expectOutput(

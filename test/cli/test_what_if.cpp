@@ -224,6 +224,14 @@ TEST_F(WhatIf, AllContactsOfABatchAreOneTable) {
   }
   EXPECT_GE(contacts, 1U);
   EXPECT_EQ(lines(results + "/what_if_pdm_lite.csv"), 1 + contacts);
+  // A session of it cannot be repeated: it is named, and the table holds the others.
+  for (const auto& run : fs::directory_iterator(results + "/runs")) {
+    if (run.path().filename().string().find("pdm_lite") != std::string::npos)
+      write("batch/runs/" + run.path().filename().string() + "/summary.json", "{}");
+  }
+  EXPECT_EQ(cdiff({"what_if", results, "--all", "--ego", "pdm_lite"}), kBadInput);
+  expectOutput("summary.json' is no summary of a session");
+  EXPECT_GE(lines(results + "/what_if_pdm_lite.csv"), 2U);
   ASSERT_LE(cdiff({"evaluate", matrix, "--results", results, "--overwrite"}), 1) << output();
   EXPECT_FALSE(fs::exists(results + "/what_if_pdm_lite.csv"));
 }

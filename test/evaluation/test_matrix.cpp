@@ -78,7 +78,9 @@ TEST(Matrix, EachSeedIsResolvedAsIfAlone) {
     EXPECT_EQ(planRuns(alone, "matrix.yaml")[0].scenario_text, together[i].scenario_text);
     EXPECT_EQ(planRuns(alone, "matrix.yaml")[0].factors, together[i].factors);
   }
-  matrix.set = {"seed=5"};  // ranks above the seeds, so all three are the same run
+  matrix.set = {"seed=3"};  // ranks above the seeds, so all three are the same run, as with 5
+  EXPECT_NE(errorOf(matrix), "");
+  matrix.set = {"seed=5"};
   EXPECT_NE(errorOf(matrix).find("a run is planned twice"), std::string::npos) << errorOf(matrix);
 }
 

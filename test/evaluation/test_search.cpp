@@ -95,6 +95,9 @@ TEST(SearchKey, HasValuesOfARangeOrOfLevels) {
   const SearchKey whole = searchKeyOf("n: 1 .. 3", "x");
   EXPECT_EQ(whole.valueAt(0.34), "2");
   EXPECT_EQ(whole.valueAt(0.9999), "3");
+  const SearchKey seeds = searchKeyOf("seed: 100000 .. 1000000000", "x");
+  EXPECT_EQ(seeds.valueAt(0.0), "100000") << "with all of its digits";
+  EXPECT_EQ(seeds.valueAt(1.0 - 1e-12), "1000000000");
   const SearchKey levels = searchKeyOf("c: one | two", "x");
   EXPECT_EQ(levels.valueAt(0.49), "one");
   EXPECT_EQ(levels.valueAt(0.5), "two");

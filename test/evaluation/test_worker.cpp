@@ -91,12 +91,33 @@ TEST_F(WorkerTest, KilledBetweenClaimAndRecordLeavesTheRunToTheNext) {
   EXPECT_EQ(starts("good1"), 1U);
 }
 
-TEST_F(WorkerTest, WaitsForWhatAnotherHostHasAndTakesItOverOnceItIsSilent) {
-  announce({"good"});
-  fs::create_directories(leaseFolder(options_.results));
-  std::ofstream(leaseFolder(options_.results) / "good0.1")
+/// A lease of another host, which may be alive.
+void writeForeignLease(const fs::path& results, const std::string& id) {
+  fs::create_directories(leaseFolder(results));
+  std::ofstream(leaseFolder(results) / (id + ".1"))
       << "host: other\nprocess: 1\nprogram: cdiff worker\nsince: 2099-01-01 00:00:00\nboot: other\n"
       << "beat: 000000000001\n";
+}
+
+// Another worker that takes a run over moves its folder, and may be killed meanwhile.
+TEST_F(WorkerTest, AFolderThatIsBeingMovedIsAnothersOrPutInPlace) {
+  announce({"good", "good"});
+  writeForeignLease(options_.results, "good0");
+  const fs::path next = options_.results / kLeftBehindFolder / ".next.good0";
+  fs::create_directories(next.parent_path());
+  fs::rename(runFolder(options_.results, "good0"), next);
+  work();
+  EXPECT_EQ(record("good1").status, "completed");
+  EXPECT_FALSE(fs::exists(file("good0", ""))) << "another has it";
+  fs::remove_all(leaseFolder(options_.results));
+  work();
+  EXPECT_EQ(record("good0").status, "completed");
+  EXPECT_FALSE(fs::exists(next));
+}
+
+TEST_F(WorkerTest, WaitsForWhatAnotherHostHasAndTakesItOverOnceItIsSilent) {
+  announce({"good"});
+  writeForeignLease(options_.results, "good0");
   std::ofstream(file("good0", ".lock"))
       << "host: other\nprocess: 1\nprogram: cdiff run\nsince: 2099-01-01 00:00:00\n";
   work();

@@ -269,6 +269,14 @@ constexpr const char* kStreetMap = R"(<?xml version="1.0"?>
 <way id="12"><nd ref="1"/><nd ref="4"/><tag k="highway" v="footway"/></way>
 </osm>)";
 
+// netconvert writes its own configuration into the comment of a network that it makes.
+TEST_F(NetworkImport, ANetworkMadeOfAMapIsASumoNetwork) {
+  const std::string text =
+      "<?xml version=\"1.0\"?>\n<!-- generated: <osm-files value=\"a.osm\"/> <OpenDRIVE -->\n"
+      "<net><edge id=\"a\"><lane id=\"a_0\" allow=\"passenger\" shape=\"0,0 1,0\"/></edge></net>";
+  EXPECT_EQ(importNetwork(write("made.net.xml", text)).text, text);
+}
+
 TEST_F(NetworkImport, ConvertsOpenStreetMapWithTheTypeMapOfThePackage) {
   const ImportedNetwork network = importNetwork(write("town.osm", kStreetMap));
   ASSERT_EQ(network.changes.size(), 1u);

@@ -49,6 +49,16 @@ class RouteSource : public ::testing::Test {
   LaneGraph graph_{network_};
 };
 
+TEST(RouteSourceInJunctions, ACircleOfLanesInAJunctionEnds) {
+  test::NetworkText text;
+  text.edge("a", {"0,0 100,0"}).edge(":j_0", {"100,0 120,0"}).edge("b", {"120,0 200,0"});
+  text.connection("a_0", "b_0", ":j_0_0").connection(":j_0_0", ":j_0_0");
+  const RoadNetwork network = text.network();
+  const LaneGraph graph(network);
+  EXPECT_EQ(routeAlongEdges(graph, {"a", "b"}, 5.0, 10.0).edges(), (Names{"a", "b"}));
+  EXPECT_ERROR(routeAlongEdges(graph, {"b", "a"}, 5.0, 10.0), "no connection for cars");
+}
+
 TEST_F(RouteSource, FollowsEdgesWithTheFewestLaneChanges) {
   const Route route = routeAlongEdges(graph_, {"a", "b"}, 5.0, 10.0);
   EXPECT_EQ(route.edges(), (Names{"a", "b"}));

@@ -173,6 +173,14 @@ TEST(MetricRegistry, NamesBothSourcesOfANameThatIsTaken) {
   shipped.measures.front().place = "/ego/collisions";
   EXPECT_NE(refusalOf(shipped).find("measure 'my_collisions'"), std::string::npos);
   EXPECT_EQ(findMeasure("my_collisions"), nullptr);
+  // A place that another measure has by default, of another metric and of the same.
+  shipped.measures.front().place = "/metrics/test_ticks/value";
+  EXPECT_NE(refusalOf(shipped).find("measure 'my_collisions'"), std::string::npos);
+  shipped.measures.front().place = "";
+  shipped.measures.push_back(shipped.measures.front());
+  shipped.measures.back().name = "your_collisions";
+  shipped.measures.back().place = "/metrics/my_collisions/value";
+  EXPECT_NE(refusalOf(shipped).find("measure 'your_collisions'"), std::string::npos);
 }
 
 TEST(MetricRegistry, RefusesADescriptorThatLacksSomething) {

@@ -32,6 +32,22 @@ TEST(RouteFollower, StartsAtTheBeginningOfARouteThatComesBack) {
   EXPECT_NEAR(later.arcLength(), 52.0, 1e-9);
 }
 
+// 100 decisions without a CBV, at which no planner of CBVs is called.
+TEST(EgoFollower, FindsAnEgoThatWasNotLookedAtForAWhile) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 400.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  EgoFollower follower;
+  traffic::TrafficSnapshot snapshot;
+  for (const std::uint64_t tick : {0U, 2U, 202U}) {
+    snapshot.tick = tick;
+    const double x = 12.0 * 0.05 * static_cast<double>(tick);
+    snapshot.vehicles = {vehicleAt("ego", x, 0.0, 0.0, 12.0)};
+    snapshot.vehicles[0].role = traffic::VehicleRole::kEgo;
+    follower.update(route, snapshot, 0.05);
+    EXPECT_NEAR(follower.arcLength(), x, 1e-9);
+  }
+}
+
 TEST(MotionForecast, HoldsTheActionOfADrivenVehicle) {
   const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
   traffic::Vehicle vehicle = vehicleAt("a", 0.0, 0.0, 0.0, 8.0);

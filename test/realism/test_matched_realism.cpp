@@ -44,6 +44,14 @@ TEST(MatchedPlan, AddsSumoOnceForEachSession) {
   EXPECT_EQ(jobs[1].driver, "PDM-Lite, naturalistic");
   EXPECT_EQ(jobs[3].run.id, "b__seed1__sumo");
   EXPECT_EQ(jobs[4].driver, "paper");
+  auto by_paper = run("a", "diffusion");
+  by_paper.factors["method"] = "paper";
+  const auto two = planMatched({run("a", "diffusion"), by_paper, run("a", "pdm_lite")}, {});
+  EXPECT_NE(two[1].driver, two[2].driver) << "two methods are two rows";
+  EXPECT_EQ(two[2].driver.substr(two[2].driver.size() - 14), ", method paper");
+  EXPECT_EQ(two[3].driver, "PDM-Lite, naturalistic") << "and no other name changes";
+  const auto alike = planMatched({run("a b", "pdm_lite"), run("a_b", "pdm_lite")}, {});
+  EXPECT_NE(alike[0].run.id, alike[2].run.id);
   auto other = run("c", "diffusion");
   other.factors["ego_planner"] = "diffusion";
   EXPECT_THROW(planMatched({run("a", "pdm_lite"), other}, {}), core::InputError);

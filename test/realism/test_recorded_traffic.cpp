@@ -80,6 +80,12 @@ TEST_F(RecordedTraffic, RefusesRowsThatAreSortedByTime) {
                                      "a,1,0,0,0,0,0,4,2\na,2,0,0,9,0,0,4,2\n"
                                      "a,1,0.1,1,0,0,0,4,2\n");
   EXPECT_NE(text.find(":4: rows of vehicle '1'"), std::string::npos) << text;
+  const std::string twice = refusalOf(std::string(kHeader) +
+                                      "a,1,0.1,0,0,0,0,4,2\na,2,0,0,9,0,0,4,2\n"
+                                      "a,1,0,1,0,0,0,4,2\n");
+  EXPECT_NE(twice.find(":4: vehicle '1' goes back in time"), std::string::npos) << twice;
+  EXPECT_NE(refusalOf(std::string(kHeader) + "a,1,1e19,0,0,0,0,4,2\n").find("time 1e+19 s"),
+            std::string::npos);
 }
 
 TEST_F(RecordedTraffic, ReadsTheFilesOfAFolder) {

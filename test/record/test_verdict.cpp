@@ -262,8 +262,18 @@ TEST(Verdict, AnAbsentInfractionIsSkippedWithItsReason) {
   const Verdict verdict = judged(rules, SessionStatus::kCompleted, measures);
   ASSERT_EQ(verdict.checks.size(), 2u);
   EXPECT_EQ(verdict.checks[1].outcome, CheckOutcome::kSkipped);
-  EXPECT_EQ(verdict.checks[1].text,
-            "red_lights of the ego is not defined: no road network was given");
+  EXPECT_EQ(verdict.checks[1].text, "red_lights is not defined: no road network was given");
+  for (const auto* definition : {&known::kRouteCompletion, &known::kEgoDistance,
+                                 &known::kDrivingScore, &known::kEgoCollisions})
+    measures.set(*definition, {std::nullopt, 0, "", "the metric threw"});
+  session::VerdictOptions absent;
+  absent.minimum_route_completion = absent.minimum_driving_score = 50.0;
+  absent.minimum_ego_distance = 10.0;
+  absent.maximum_ego_collisions = 0.0;
+  const Verdict skipped = judged(absent, SessionStatus::kCompleted, measures);
+  ASSERT_EQ(skipped.checks.size(), 5u);
+  for (std::size_t i = 1; i < 5; ++i)
+    EXPECT_EQ(skipped.checks[i].outcome, CheckOutcome::kSkipped) << skipped.checks[i].text;
   measures.set(known::kCbvOffRoad, {std::nullopt, 0, "%", "no CBV was driven"});
   rules.maximum_cbv_off_road_percent = 0.0;
   EXPECT_EQ(judged(rules, SessionStatus::kCompleted, measures).checks[2].outcome,

@@ -135,6 +135,13 @@ TEST_F(StoryboardActor, AStoppedActionKeepsTheSpeedReached) {
   EXPECT_NEAR(actor_.speed(), 2.0, 1e-9);
 }
 
+TEST_F(StoryboardActor, ATimedTrajectoryThatEndsWithinAStepLeavesItsOwnSpeed) {
+  actor_.follow({{{{10.0, -5.25}, 0.0}, 0.0}, {{{30.1, -5.25}, 0.0}, 0.0}}, {0.0, 2.01},
+                std::make_shared<Performance>());
+  drive(3.0);
+  EXPECT_NEAR(actor_.speed(), 10.0, 1e-9);
+}
+
 TEST_F(StoryboardActor, ALaneChangeEndsATrajectory) {
   actor_.setSpeed({}, 10.0, std::make_shared<Performance>());
   const auto course = std::make_shared<Performance>();

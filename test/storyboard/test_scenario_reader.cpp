@@ -141,9 +141,11 @@ TEST_F(ScenarioReader, ReadsTheActionsOnSeveralEntities) {
   EXPECT_EQ(meeting.steady_distance, 5.0);
   const auto gap = std::get<DistanceAction>(
       read("<LongitudinalAction><LongitudinalDistanceAction entityRef=\"Ego\" distance=\"7\" "
+           "coordinateSystem=\"lane\" "
            "displacement=\"leadingReferencedEntity\"><DynamicConstraints maxAcceleration=\"2\" "
            "maxSpeed=\"9\"/></LongitudinalDistanceAction></LongitudinalAction>"));
   EXPECT_EQ(gap.side, Side::kAheadOrLeft);
+  EXPECT_TRUE(gap.along_lanes);
   EXPECT_EQ(gap.limits->deceleration, 2.0);  // as of the acceleration where none is given
   EXPECT_EQ(gap.limits->speed, 9.0);
   const auto beside = std::get<LateralDistanceAction>(
@@ -393,6 +395,42 @@ TEST_F(ScenarioReader, NobodyInAVertexIsNamedBeforeAnythingRuns) {
       vertex + vertex +
       "</Polyline></Shape></Trajectory></FollowTrajectoryAction></RoutingAction>"));
   expectText(errorIn(file), "there is no entity 'nobody'");
+}
+
+TEST_F(ScenarioReader, ParametersOfActionsMustBeDeclaredAndModifiedByNumbers) {
+  const auto error = [&](const std::string& action) {
+    return errorIn(scenario("<GlobalAction>" + action + "</GlobalAction>"));
+  };
+  const std::string value = "\"><SetAction value=\"1\"/></ParameterAction>";
+  EXPECT_EQ(error("<ParameterAction parameterRef=\"v" + value), "no error");
+  expectText(error("<ParameterAction parameterRef=\"w" + value),
+             ":10: 'w' is declared neither among the parameters nor among the variables");
+  expectText(error("<ParameterAction parameterRef=\"v\"><ModifyAction><Rule><AddValue "
+                   "value=\"some\"/></Rule></ModifyAction></ParameterAction>"),
+             ":10: <AddValue>");
+}
+
+TEST_F(ScenarioReader, OnlyLimitsMayBeInfinite) {
+  const auto place = [&](const std::string& x) {
+    return errorIn(scenario(privateAction("<TeleportAction><Position><WorldPosition x=\"" + x +
+                                          "\" y=\"0\"/></Position></TeleportAction>")));
+  };
+  EXPECT_EQ(place("7"), "no error");
+  for (const char* x : {"INF", "inf", "${1e308 * 10}"}) expectText(place(x), "<WorldPosition>");
+  EXPECT_EQ(errorIn(scenario(privateAction(
+                "<LongitudinalAction><LongitudinalDistanceAction entityRef=\"Ego\" distance=\"7\">"
+                "<DynamicConstraints maxAcceleration=\"INF\" maxDeceleration=\"inf\" "
+                "maxSpeed=\"INF\"/></LongitudinalDistanceAction></LongitudinalAction>"))),
+            "no error");
+}
+
+TEST_F(ScenarioReader, DistancesAlongTrajectoriesAreRefused) {
+  for (const std::string kind : {"Longitudinal", "Lateral"}) {
+    expectText(errorIn(scenario(privateAction(
+                   "<" + kind + "Action><" + kind + "DistanceAction entityRef=\"Ego\" " +
+                   "distance=\"7\" coordinateSystem=\"trajectory\"/></" + kind + "Action>"))),
+               "a distance along a trajectory");
+  }
 }
 
 TEST_F(ScenarioReader, CarlasCoordinatesAreMirrored) {

@@ -142,6 +142,64 @@ TEST_F(StoryboardTrafficStage, WithoutLimitsADistanceIsThereAtOnce) {
   EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 124.0, 1e-6);
 }
 
+TEST_F(StoryboardTrafficStage, AFreeSpaceIsKeptAlsoFromAbreast) {
+  observe(100.0, 10.0);
+  begin(placeAt(100.1));
+  DistanceAction distance;
+  distance.entity = "ego";
+  distance.freespace = true;
+  distance.value = 10.0;
+  distance.side = Side::kAheadOrLeft;
+  EXPECT_TRUE(begin(distance)->over);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 114.0, 1e-6);  // boxes of 4 m
+}
+
+TEST_F(StoryboardTrafficStage, ADistanceAlongTheLaneIsKeptToo) {
+  observe(100.0, 10.0);
+  begin(placeAt(20.0));
+  DistanceAction distance;
+  distance.entity = "ego";
+  distance.along_lanes = true;
+  distance.value = 30.0;
+  EXPECT_TRUE(begin(distance)->over);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 70.0, 1e-6);
+}
+
+// One drives off the lanes in the midst of a session: that is nothing wrong with the file.
+TEST_F(StoryboardTrafficStage, APlaceBesideOneThatIsOnNoLaneIsNotReached) {
+  begin(placeAt(20.0));
+  EntityCondition near;
+  near.entities = {"car"};
+  near.measure = Measure::kDistance;
+  near.rule = Rule::kLess;
+  near.value = 50.0;
+  near.place.emplace();
+  near.place->kind = Position::Kind::kRelativeLane;
+  near.place->entity = "ego";
+  Condition condition;
+  condition.what = near;
+  observe(40.0, 10.0);
+  EXPECT_TRUE(stage_.holds(condition, time_));
+  traffic::VehicleState off;
+  off.position = {40.0, 60.0};
+  stage_.observe("ego", off, nullptr, kStep);
+  EXPECT_FALSE(stage_.holds(condition, time_));
+}
+
+TEST_F(StoryboardTrafficStage, WhoStandsHasAnEndlessHeadway) {
+  begin(placeAt(20.0));
+  observe(10.0, 0.0);
+  EntityCondition headway;
+  headway.entities = {"ego"};
+  headway.other = "car";
+  headway.measure = Measure::kHeadway;
+  headway.rule = Rule::kGreater;
+  headway.value = 100.0;
+  Condition condition;
+  condition.what = headway;
+  EXPECT_TRUE(stage_.holds(condition, time_));
+}
+
 TEST_F(StoryboardTrafficStage, ADistanceIsKeptWithinTheLimits) {
   driveBehindEgo(10.0, 30.0);
   DistanceAction distance;

@@ -89,6 +89,8 @@ TEST_F(SuiteFiles, NamesLineAndKeyOfAWrongManifest) {
   expectPart(errorOf(), "line 5: key 'density' is missing");
   writeWhole(changed("turn: 90", "turn: 90, color: red"));
   expectPart(errorOf(), "unknown key 'color'");
+  writeWhole(changed("seed: 4", "seed: 4\n? [a, b]\n: 1"));
+  expectPart(errorOf(), "expected keys that are plain words");
   writeWhole(changed("length: 120", "length: long"));
   expectPart(errorOf(), "key 'length': expected a number");
   writeWhole(changed("schema_version: 1", "schema_version: 2"));

@@ -69,7 +69,7 @@ struct RigOptions {
 
   void describe(core::OptionsVisitor& visitor);  ///< visits every option
   /// Throws InputError naming the key after `group` ("ego_rig."): cameras listed without the preset
-  /// "own" or none with it, a size for the preset "front", and what CameraRig::validate refuses.
+  /// "own" or none with it, a size beside the preset "own", and what CameraRig::validate refuses.
   void validate(const std::string& group) const;
 };
 

@@ -47,11 +47,19 @@ bool acts(const std::string& key, const session::ScenarioOptions& scenario) {
   return key != "begin_time" || (!generated && scenario.demand != "none");
 }
 
+/// A whole number with all of its digits.
+std::string wholeText(double value) { return std::to_string(std::llround(value)); }
+
 /// Resolves the scenario with the ends of the range, or with every level.
 void requireAllowed(const SearchKey& key, session::SessionRequest request,
                     const std::string& source) {
   std::vector<std::string> values = key.levels;
-  if (values.empty()) values = {core::formatNumber(key.low), core::formatNumber(key.high)};
+  if (values.empty()) {
+    const auto text = [&](double end) {
+      return key.whole ? wholeText(end) : core::formatNumber(end);
+    };
+    values = {text(key.low), text(key.high)};
+  }
   request.set_source = source;
   for (const std::string& value : values) {
     session::SessionRequest varied = request;
@@ -65,7 +73,7 @@ void requireAllowed(const SearchKey& key, session::SessionRequest request,
 std::string SearchKey::valueAt(double place) const {
   if (!levels.empty())
     return levels[static_cast<std::size_t>(place * static_cast<double>(levels.size()))];
-  if (whole) return core::formatNumber(low + std::floor(place * (high - low + 1.0)));
+  if (whole) return wholeText(low + std::floor(place * (high - low + 1.0)));
   const double share = std::floor(place * (kRangeSteps + 1.0)) / kRangeSteps;
   // Steps of a range are no decimals of few digits in binary; nine digits give them back.
   char text[32];

@@ -91,12 +91,20 @@ double stepOf(std::string_view trace, double seconds) {
   return tick.value_or(0.0) > 0.0 ? seconds / *tick : 0.0;
 }
 
+/// "naturalistic, CBVs diffusion", and the method where it is not the default one.
+std::string settingOf(const json& summary) {
+  const std::string usual = session::ScenarioOptions().method;
+  const std::string method = summary.value("method_preset", usual);
+  return summary.at("mode").get<std::string>() + ", CBVs " +
+         summary.at("cbv_planner").get<std::string>() +
+         (method == usual ? "" : ", method " + method);
+}
+
 /// The ego is called by its planner. Throws json::exception for a damaged summary.
 EgoRun readRun(const fs::path& folder, const fs::path& base) {
   const json summary = json::parse(core::readFile(folder / "summary.json", "summary"));
   EgoRun run;
-  run.setting = summary.at("mode").get<std::string>() + ", CBVs " +
-                summary.at("cbv_planner").get<std::string>();
+  run.setting = settingOf(summary);
   run.ego = summary.at("ego_planner");
   run.scenario = summary.at("scenario");
   run.seed = std::to_string(summary.at("seed").get<std::int64_t>());

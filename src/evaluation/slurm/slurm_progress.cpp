@@ -47,7 +47,7 @@ class JobWatch {
     for (std::size_t left = std::min(most, open_.size()); left > 0; --left) {
       const std::string id = open_.front();
       open_.pop_front();
-      const auto record = readRecord(runFolder(wait_.results, id) / "record.json");
+      const auto record = readRecord(runFolder(wait_.results, id) / kRecordFile);
       if (!record || record->status == "not_run" || record->status == "interrupted") {
         open_.push_back(id);
       } else if (wait_.ended) {

@@ -112,14 +112,28 @@ void storeUnlessThere(const fs::path& file, const std::string& text) {
   if (core::cachedContent(file) != text) core::storeInCache(file, text);
 }
 
+/// Whether `tag` ("<osm") starts the first element, behind declarations and comments.
+bool startsWithElement(std::string_view content, std::string_view tag) {
+  for (std::size_t at = content.find('<'); at != std::string_view::npos;
+       at = content.find('<', at + 1)) {
+    if (content.compare(at, 4, "<!--") == 0) {
+      at = content.find("-->", at);
+      if (at == std::string_view::npos) return false;
+      continue;
+    }
+    if (content.compare(at, 2, "<?") == 0 || content.compare(at, 2, "<!") == 0) continue;
+    return content.compare(at, tag.size(), tag) == 0;
+  }
+  return false;
+}
+
 bool isOpenDrive(const std::string& source, const std::string& content) {
-  return core::endsWith(source, ".xodr") || content.find("<OpenDRIVE") != std::string::npos;
+  return core::endsWith(source, ".xodr") || startsWithElement(content, "<OpenDRIVE");
 }
 
 bool isOpenStreetMap(const std::string& source, const std::string& content) {
-  constexpr std::size_t kHead = 4096;  // [bytes] within which the first element starts
   return core::endsWith(source, ".osm") || core::endsWith(source, ".osm.xml") ||
-         std::string_view(content).substr(0, kHead).find("<osm") != std::string_view::npos;
+         startsWithElement(content, "<osm");
 }
 
 /// A file format that netconvert converts.

@@ -3,6 +3,7 @@
 #include "planners/diffusion/challenge_choice.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -73,9 +74,13 @@ ChosenPlan ChallengeChoice::choose(std::uint64_t tick, const PlannedVehicle& veh
                                    const DiffusionSituation& situation, PlanCandidates candidates) {
   const traffic::VehicleState& now = vehicle.task->vehicle->state;
   const std::size_t sampled = candidates.plans.size();
+  std::vector<std::size_t> origins(sampled);  // the sample that a plan was made of
+  std::iota(origins.begin(), origins.end(), 0);
   for (std::size_t i = 0; i < sampled; ++i) {
     candidates.scores[i].value = situation.objectives.front()->score(candidates.plans[i]).value;
     for (const Retiming& retiming : kRetimings) {
+      if (retiming.row >= candidates.plans[i].rows()) continue;
+      origins.push_back(i);
       const Rollout later = retimed(candidates.plans[i], candidates.driven[i], retiming, now.speed);
       add(choice_.drivenBy(later, now.speed), candidates.scores[i].value, candidates);
     }
@@ -96,11 +101,13 @@ ChosenPlan ChallengeChoice::choose(std::uint64_t tick, const PlannedVehicle& veh
   const guidance::ChallengeReport report = challenge_.choose(*vehicle.task->vehicle, plans);
   const auto best = static_cast<std::size_t>(report.chosen);
   const auto& objective = *situation.objectives[best < sampled ? best : 0];
+  origins.resize(plans.size(), 0);  // braking and the kept plan stand for none: the first
   ChosenPlan chosen{candidates.plans[best], candidates.driven[best],
                     objective.report(candidates.plans[best])};
   chosen.report.candidates = guidance_.candidates;
   chosen.report.chosen = report.chosen;
   chosen.report.challenge = report;
+  chosen.report.trust_region_share = candidates.trust_region_shares[origins[best]];
   return chosen;
 }
 

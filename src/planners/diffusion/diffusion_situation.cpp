@@ -40,11 +40,7 @@ void SituationMaker::followEgo(const traffic::TrafficSnapshot& snapshot) {
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego == nullptr || context_.ego_route == nullptr || context_.ego_route->empty()) return;
   if (!planning::isFinite(ego->state)) return;
-  constexpr double kFastest = 40.0;  // [m/s]
-  const auto skipped = static_cast<double>(snapshot.tick - std::min(snapshot.tick, ego_tick_));
-  ego_follower_.update(*context_.ego_route, ego->state.position,
-                       kFastest * skipped * context_.simulation_step);
-  ego_tick_ = snapshot.tick;
+  ego_follower_.update(*context_.ego_route, snapshot, context_.simulation_step);
 }
 
 void SituationMaker::startDecision(const traffic::TrafficSnapshot& snapshot,

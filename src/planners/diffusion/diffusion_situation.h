@@ -107,8 +107,7 @@ class SituationMaker {
   planning::PlanningContext context_;
   const diffusion::Model& model_;
   const dynamics::ActionRollout& exact_;
-  planning::RouteFollower ego_follower_;
-  std::uint64_t ego_tick_ = 0;                               ///< at which ego_follower_ was moved
+  planning::EgoFollower ego_follower_;
   std::map<std::string, guidance::OtherMotion> companions_;  ///< of this decision, by vehicle
   guidance::RightOfWay right_of_way_;                        ///< among them
 };

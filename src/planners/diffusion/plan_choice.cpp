@@ -58,12 +58,15 @@ PlanCandidates PlanChoice::candidatesOf(const std::vector<diffusion::SampledTraj
                                         std::size_t first,
                                         const DiffusionSituation& situation) const {
   PlanCandidates candidates;
-  auto& [plans, driven, scores] = candidates;
+  auto& [plans, driven, scores, shares] = candidates;
   const Eigen::Index rows = std::lround(guidance_.road_horizon / traffic::kRolloutStep);
   for (std::size_t i = 0; i < situation.objectives.size(); ++i) {
     plans.push_back(normalizer_.denormalize(samples[first + i].clean));
     driven.push_back(drivenBy(plans.back(), situation.scene.state.speed));
     scores.push_back(situation.objectives[i]->score(plans.back()));
+    const diffusion::SampledTrajectory& sample = samples[first + i];
+    shares.push_back(static_cast<double>(sample.trust_region_hits) /
+                     std::max(1.0, static_cast<double>(sample.guided_steps)));
     scores.back().off_road = guidance::rowsOffRoad(situation.scene, driven.back(), rows);
   }
   return candidates;
@@ -72,16 +75,12 @@ PlanCandidates PlanChoice::candidatesOf(const std::vector<diffusion::SampledTraj
 ChosenPlan PlanChoice::among(const std::vector<diffusion::SampledTrajectory>& samples,
                              std::size_t first, const DiffusionSituation& situation) const {
   PlanCandidates candidates = candidatesOf(samples, first, situation);
-  const auto& [plans, driven, scores] = candidates;
+  const auto& [plans, driven, scores, shares] = candidates;
   const std::size_t best = choosePlan(plans, scores, situation.previous, hysteresis_);
   ChosenPlan chosen{plans[best], driven[best], situation.objectives[best]->report(plans[best])};
   chosen.report.candidates = guidance_.candidates;
   chosen.report.chosen = static_cast<std::int64_t>(best);
-  const diffusion::SampledTrajectory& sample = samples[first + best];
-  if (sample.guided_steps > 0) {
-    chosen.report.trust_region_share =
-        static_cast<double>(sample.trust_region_hits) / static_cast<double>(sample.guided_steps);
-  }
+  chosen.report.trust_region_share = shares[best];
   chosen.weighed = std::move(candidates);
   return chosen;
 }

@@ -30,6 +30,7 @@ struct PlanCandidates {
   std::vector<traffic::Rollout> plans;   ///< as sampled
   std::vector<traffic::Rollout> driven;  ///< what the vehicle does
   std::vector<guidance::Score> scores;
+  std::vector<double> trust_region_shares;  ///< of the guided denoising steps of each
 };
 
 /// The plan that a vehicle drives (rollouts [T, 7], body frame, SI units).

@@ -18,7 +18,8 @@ Ppo::Ppo(const PpoOptions& options, const PdmLiteOptions& on_route,
     : options_(options),
       actor_(PpoActor::readWeights(options.folder())),
       on_route_(on_route, vehicle, context),
-      ego_route_(context.ego_route) {}
+      ego_route_(context.ego_route),
+      simulation_step_(context.simulation_step) {}
 
 std::string Ppo::faultOf(const traffic::Vehicle* ego) const {
   if (ego_route_ == nullptr || ego_route_->empty()) return "the ego's route is not known";
@@ -37,7 +38,7 @@ std::vector<planning::PlannedAction> Ppo::plan(const traffic::TrafficSnapshot& s
     return actions;
   }
   forgetOthers(tasks);
-  ego_.update(*ego_route_, snapshot.ego()->state.position);
+  ego_.update(*ego_route_, snapshot, simulation_step_);
   const PpoGoal goal = ppoGoal(*ego_route_, ego_.arcLength());
   for (const planning::PlanningTask& task : tasks)
     actions.push_back(towardGoal(snapshot, task, goal));

@@ -55,7 +55,8 @@ class Ppo : public planning::Planner {
   PpoActor actor_;
   PdmLite on_route_;
   const map::Route* ego_route_;
-  planning::RouteFollower ego_;
+  planning::EgoFollower ego_;
+  double simulation_step_;         ///< [s]
   std::set<std::string> arrived_;  ///< ids of those of the last call that have reached their goal
 };
 

@@ -37,6 +37,9 @@ class TwoStagePid : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
+  void setGuidance(const guidance::GuidanceOptions& guidance) override {
+    planner_->setGuidance(guidance);
+  }
 
  private:
   using Tracker = std::variant<planning::PlanTracker, PdmLiteTracker>;

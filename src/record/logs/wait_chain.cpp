@@ -21,7 +21,8 @@ constexpr double kSideRoom = 0.4;      ///< beside the ego's box that others mus
 constexpr double kWaitingSpeed = 0.5;  ///< slower is waiting [m/s]
 constexpr double kGap = 3.0;        ///< SUMO's gap of 2.5 m, and what vehicles stop short of it [m]
 constexpr double kStopSlack = 1.0;  ///< of the place where a vehicle stops [m]
-constexpr double kMeeting = 2.0;    ///< nearer center lines of two ways meet [m]
+constexpr std::size_t kLongestChain = 8;  ///< internal lanes in a row
+constexpr double kMeeting = 2.0;          ///< nearer center lines of two ways meet [m]
 
 /// Lanes in a junction, one after the other.
 using Way = std::vector<map::LaneIndex>;
@@ -184,7 +185,7 @@ class WaitSearch {
       }
     }
     for (Way& way : ways) {
-      while (!network_.lane(way.back()).next.empty()) {
+      while (way.size() < kLongestChain && !network_.lane(way.back()).next.empty()) {
         const map::LaneIndex next = network_.lane(way.back()).next.front().to;
         if (!network_.lane(next).internal) break;
         way.push_back(next);
@@ -218,7 +219,9 @@ class WaitSearch {
     std::vector<map::LaneLink> links;
     for (const map::LaneLink& link : lane.next) {
       map::LaneIndex exit = link.to;
-      while (network_.lane(exit).internal && !network_.lane(exit).next.empty())
+      for (std::size_t i = 0;
+           i < kLongestChain && network_.lane(exit).internal && !network_.lane(exit).next.empty();
+           ++i)
         exit = network_.lane(exit).next.front().to;
       if (network_.lane(exit).edge_id == *std::next(now)) links.push_back(link);
     }

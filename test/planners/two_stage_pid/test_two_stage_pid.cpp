@@ -53,6 +53,21 @@ TEST_F(TwoStagePidTest, TracksThePlanOfTheDiffusionPlannerVehicleByVehicle) {
   }
 }
 
+TEST_F(TwoStagePidTest, FollowsTheGuidanceThatItIsGiven) {
+  goTo(0);
+  TwoStagePid steered = makePlanner();
+  const auto unsteered = makePlanner().plan(snapshot_, tasks());
+  guidance_ = guidance::loadProfile("safety_critical");
+  const auto expected = makePlanner().plan(snapshot_, tasks());
+  steered.setGuidance(guidance_);
+  const auto actions = steered.plan(snapshot_, tasks());
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(actions[i].action, expected[i].action);
+    EXPECT_EQ(actions[i].rollout[9].state.position, expected[i].rollout[9].state.position);
+    EXPECT_FALSE(actions[i].rollout[9].state.position == unsteered[i].rollout[9].state.position);
+  }
+}
+
 /// Plans of 5.1 m/s and slightly to the left for vehicles of 5 m/s: the normalizer's mean, from
 /// which the random model moves by millimeters. So the tracker's pedals stay within their range,
 /// and what it remembers shows.

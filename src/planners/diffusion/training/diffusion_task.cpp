@@ -225,7 +225,12 @@ void DiffusionTask::start(const learning::TrainingRun& run) {
 nlohmann::json DiffusionTask::facts() const {
   return {{"normalizer", state_->normalizer.toJson()},
           {"balance", settings.balance},
-          {"yielding_share", settings.yielding_share}};
+          {"yielding_share", settings.yielding_share},
+          {"training_loss", settings.loss},
+          {"mirror", settings.mirror},
+          {"image_scale", settings.image_scale},
+          {"route_drop", settings.route_drop},
+          {"change_light", settings.change_light}};
 }
 
 std::vector<learning::TrainedPart> DiffusionTask::parts() {

@@ -273,6 +273,18 @@ std::vector<std::string> sourcesOf(const learning::TrainingOptions& options) {
   return stages;
 }
 
+/// A fine-tuned encoder is exported with the denoiser that is there. Throws InputError where that
+/// has another normalizer.
+void requireDenoiserOf(const json& normalizer, const learning::TrainingOptions& options) {
+  const fs::path path = learning::checkpointPath(options.output, "denoiser");
+  if (options.stage != "fine_tune" || !fs::exists(path)) return;
+  const json facts = learning::readCheckpoint(path).facts;
+  if (!facts.contains("normalizer") || facts.at("normalizer") == normalizer) return;
+  throw core::InputError("checkpoint '" + path.string() +
+                         "' has another normalizer than the encoder's, with which it would be "
+                         "exported; train the denoiser anew, or remove this file");
+}
+
 }  // namespace
 
 diffusion::Normalizer chooseNormalizer(const learning::TrainingOptions& options, bool mirror,
@@ -284,6 +296,7 @@ diffusion::Normalizer chooseNormalizer(const learning::TrainingOptions& options,
     const json facts = learning::readCheckpoint(path).facts;
     // One without is of a time when each run fitted its own.
     if (!facts.contains("normalizer")) return fitNormalizer(dataset, mirror);
+    requireDenoiserOf(facts.at("normalizer"), options);
     return readNormalizer(facts.at("normalizer"), path, dataset.schema().horizon);
   }
   return init != nullptr ? init->normalizer : fitNormalizer(dataset, mirror);

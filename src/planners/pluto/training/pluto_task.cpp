@@ -184,6 +184,12 @@ void PlutoTask::start(const learning::TrainingRun& run) {
   loadWeights(run);
 }
 
+nlohmann::json PlutoTask::facts() const {
+  nlohmann::json facts = NetworkTask::facts();
+  facts["settings"] = core::dumpOptions(settings);
+  return facts;
+}
+
 std::unique_ptr<learning::Stage> PlutoTask::makeStage(const std::string&) {
   return std::make_unique<ImitationOfPlans>(*state_);
 }

@@ -46,6 +46,7 @@ class PlutoTask : public NetworkTask<PlutoTrainingSettings, PlutoTrainingState> 
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;
   void start(const learning::TrainingRun& run) override;
+  nlohmann::json facts() const override;
   std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
 
  protected:
