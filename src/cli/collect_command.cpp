@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "collection/dataset_statistics.h"
 #include "core/file.h"
+#include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
@@ -147,7 +148,7 @@ bool hasScene(const fs::path& file) {
     learning::readScene(file);
     return true;
   } catch (const core::InputError& error) {
-    std::cerr << "cdiff: " << error.what() << "; its session is driven again\n";
+    std::cerr << "cdiff: " << core::plainText(error.what()) << "; its session is driven again\n";
     return false;
   }
 }
@@ -178,18 +179,25 @@ evaluation::PlannedRun runOf(const CollectRequest& request,
   return run;
 }
 
-/// A command without what says which files a session leaves.
+/// What decides how a session is driven: its command without the scenario, which its hash stands
+/// for, and without what says which files it leaves; keys in any order.
 std::vector<std::string> drivingWords(std::vector<std::string> words) {
   const auto of_files = [](const std::string& word) {
     return word == "--keep-bags" || word == "--no-images" || word == "--scenes";
   };
   words.erase(std::remove_if(words.begin(), words.end(), of_files), words.end());
+  if (words.size() > 1) words.erase(words.begin() + 1);
+  std::sort(words.begin(), words.end());
   return words;
 }
 
-/// Throws InputError where the session that is there was asked for with other settings; one without
-/// a record, of an earlier version, counts as it is.
-void requireSameSettings(const evaluation::PlannedRun& run, const fs::path& results) {
+/// Throws InputError where samples or a scene of the session are there that were asked for with
+/// other settings; those without a record, of an earlier version, count as they are.
+void requireSameSettings(const evaluation::PlannedRun& run, const CollectRequest& request) {
+  if (!fs::exists(collection::shardFile(request, run.id)) &&
+      !fs::exists(collection::sceneFile(request, run.id)))
+    return;
+  const fs::path& results = request.results;
   const fs::path file = evaluation::runFolder(results, run.id) / evaluation::kRecordFile;
   const auto there = evaluation::readRecord(file);
   if (!there || (there->scenario_sha256 == run.scenario_sha256 &&
@@ -207,11 +215,8 @@ std::vector<evaluation::PlannedRun> planOf(const std::vector<CollectRequest>& se
   for (const CollectRequest& request : sessions) {
     const auto settings = collection::resolveCollection(request);
     evaluation::PlannedRun run = runOf(request, settings, hasher);
-    if (isDone(request, run.id)) {
-      requireSameSettings(run, request.results);
-    } else {
-      plan.push_back(std::move(run));
-    }
+    requireSameSettings(run, request);
+    if (!isDone(request, run.id)) plan.push_back(std::move(run));
   }
   std::cerr << sessions.size() << " sessions, " << sessions.size() - plan.size()
             << " of them already there\n";

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "core/csv.h"
+#include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
@@ -95,27 +96,30 @@ std::string sharesText(const std::vector<Answer>& answers, const std::string& dr
 struct AnswerTable {
   std::string csv;
   std::vector<Answer> answers;
+  std::size_t asked = 0;              ///< sessions
   int exit_code = ExitCode::kPassed;  ///< of sessions that could not be asked
 };
 
-void addSession(AnswerTable& table, const fs::path& folder, const WhatIfArguments& arguments) {
-  for (Answer& answer : answersOf(folder, arguments, core::catchStopSignals())) {
+void addSession(AnswerTable& table, const fs::path& folder, const WhatIfArguments& arguments,
+                const std::atomic<bool>& stop) {
+  for (Answer& answer : answersOf(folder, arguments, stop)) {
     std::vector<std::string> cells = what_if::answerCells(answer);
     cells.insert(cells.begin(), folder.filename().string());
     table.csv += core::csvRow(cells);
     table.answers.push_back(std::move(answer));
   }
+  ++table.asked;
 }
 
 /// Sessions of a batch that cannot be repeated are named and left out.
-void addSessionOrName(AnswerTable& table, const fs::path& folder,
-                      const WhatIfArguments& arguments) {
+void addSessionOrName(AnswerTable& table, const fs::path& folder, const WhatIfArguments& arguments,
+                      const std::atomic<bool>& stop) {
   try {
-    addSession(table, folder, arguments);
+    addSession(table, folder, arguments, stop);
   } catch (const core::Interrupted&) {
     throw;
   } catch (const core::Error& error) {
-    std::cerr << "cdiff: " << error.what() << "; this session is left out\n";
+    std::cerr << "cdiff: " << core::plainText(error.what()) << "; this session is left out\n";
     const bool input = dynamic_cast<const InputError*>(&error) != nullptr;
     if (table.exit_code != ExitCode::kRunTimeError)
       table.exit_code = input ? ExitCode::kBadInput : ExitCode::kRunTimeError;
@@ -128,12 +132,14 @@ int askAll(const WhatIfArguments& arguments) {
   head.insert(head.begin(), "run");
   AnswerTable table{core::csvRow(head), {}};
   const std::vector<fs::path> folders = record::sessionFolders(result);
+  const std::atomic<bool>& stop = core::catchStopSignals();
   for (const fs::path& folder : folders) {
     if (folders.size() == 1)
-      addSession(table, folder, arguments);
+      addSession(table, folder, arguments, stop);
     else
-      addSessionOrName(table, folder, arguments);
+      addSessionOrName(table, folder, arguments, stop);
   }
+  if (table.asked == 0) return table.exit_code;  // and an earlier table stays
   const std::string label = arguments.driver.label();
   core::writeOwnFile(result / ("what_if_" + core::fileName(label) + ".csv"), table.csv);
   std::cout << sharesText(table.answers, label);

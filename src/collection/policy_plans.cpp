@@ -128,10 +128,12 @@ PolicyPlans::PolicyPlans(const std::string& model, std::int64_t count,
   if (model_.architecture.horizon != samples.horizon ||
       model_.architecture.image_width != samples.image_width ||
       model_.architecture.image_height != samples.image_height ||
-      model_.architecture.route_points != samples.route_points) {
-    throw core::InputError("collection.policy_plans: model '" + model +
-                           "' has another horizon, image size or number of route points than the "
-                           "samples");
+      model_.architecture.route_points != samples.route_points ||
+      model_.architecture.route_spacing != samples.route_spacing) {
+    throw core::InputError(
+        "collection.policy_plans: model '" + model +
+        "' has another horizon, image size or number or spacing of route points than the "
+        "samples");
   }
 }
 

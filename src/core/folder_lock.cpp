@@ -71,6 +71,12 @@ void FolderLock::requireUnlocked(const fs::path& folder) {
     throw heldBy(folder, file.get());
 }
 
+bool FolderLock::isOfAnotherHost(const fs::path& folder) {
+  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const FileDescriptor file(::open((folder / kFile).c_str(), kFlags));
+  return file && isLock(file.get()) && holderFacts(file.get())["host"] != hostName();
+}
+
 void FolderLock::removeLeftBehind(const fs::path& folder) {
   constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;  // NFS locks no others
   const fs::path path = folder / kFile;

@@ -21,6 +21,8 @@ class FolderLock {
 
   /// Throws the constructor's InputError where another process holds the folder now; makes nothing.
   static void requireUnlocked(const std::filesystem::path& folder);
+  /// Whether the file is there and names another host. Throws nothing.
+  static bool isOfAnotherHost(const std::filesystem::path& folder);
   /// Removes the file of a process that no kernel says to hold it. For callers who know that the
   /// process is gone, also where it was one of another host.
   static void removeLeftBehind(const std::filesystem::path& folder);

@@ -304,14 +304,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tables and figures pool runs over scenarios and seeds, never over variants: of several, the runs
-/// without one count, else those of the first. Rows that name a variant have its runs.
-std::string pooledVariant(const std::vector<BatchRun>& runs) {
-  std::set<std::string> variants;
-  for (const BatchRun& run : runs) variants.insert(run.record.factors.at("variant"));
-  return variants.empty() ? "" : *variants.begin();
-}
-
 std::vector<BatchRun> ofVariant(const std::string& variant, const std::vector<BatchRun>& runs) {
   std::vector<BatchRun> kept;
   for (const BatchRun& run : runs) {

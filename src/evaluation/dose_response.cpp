@@ -135,7 +135,9 @@ DoseResponse responseOf(const Axis& axis, const std::string& measure, RouteBoots
 
 std::string correlationText(const DoseResponse& response) {
   if (!response.rank_correlation) return "none: all responses are equal, or one is unknown";
-  return core::formatFixed(*response.rank_correlation, 2) + intervalText(response.interval, 2);
+  const std::string interval =
+      showsIntervals(response.routes) ? intervalText(response.interval, 2) : "";
+  return core::formatFixed(*response.rank_correlation, 2) + interval;
 }
 
 /// The responses of one axis: those from `first` to `end`.

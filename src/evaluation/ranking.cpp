@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/comparison/comparison.h"
 #include "metrics/known_measures.h"
 
@@ -48,11 +49,16 @@ RunSet runsOf(const System& system, const std::vector<RunRecord>& records) {
   return set;
 }
 
-/// Whether contacts of two systems differ by chance; 1 without a pair of runs.
+/// Whether contacts of two systems differ by chance; 1 without a pair of runs, and where they had
+/// other inputs, as other traffic.
 double probabilityOf(const RunSet& first, const RunSet& other, const std::string& measure) {
-  const Comparison comparison =
-      compareRuns(first, other, {"scenario", "seed", "repetition"}, {measure});
-  return comparison.measures.empty() ? 1.0 : comparison.measures.front().p;
+  try {
+    const Comparison comparison =
+        compareRuns(first, other, {"scenario", "seed", "repetition"}, {measure});
+    return comparison.measures.empty() ? 1.0 : comparison.measures.front().p;
+  } catch (const core::InputError&) {
+    return 1.0;
+  }
 }
 
 void compareFirst(const std::vector<RunRecord>& records, const SystemNames& names,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "core/file.h"
@@ -36,10 +37,11 @@ const std::vector<std::pair<std::string, std::string>>& places() {
 /// Longest post-encroachment time of a close interaction [s].
 constexpr double kCloseEncroachment = 3.0;
 
-/// Shares of the selected CBVs whose path the ego's crossed, and crossed within kCloseEncroachment.
-void addInteractions(const json& summary, std::size_t selections, Measures& measures) {
+/// Shares of the vehicles that were CBVs whose path the ego's crossed, and crossed within
+/// kCloseEncroachment; one that was selected twice counts once.
+void addInteractions(const json& summary, Measures& measures) {
   const json::json_pointer place("/cbv/post_encroachments");
-  if (selections == 0 || !summary.contains(place)) return;
+  if (!summary.contains(place) || summary.at(place).empty()) return;
   double crossed = 0.0;
   double close = 0.0;
   for (const json& entry : summary.at(place)) {
@@ -48,7 +50,8 @@ void addInteractions(const json& summary, std::size_t selections, Measures& meas
     ++crossed;
     close += std::abs(time.get<double>()) <= kCloseEncroachment ? 1.0 : 0.0;
   }
-  const auto share = [&](double count) { return 100.0 * count / static_cast<double>(selections); };
+  const auto vehicles = static_cast<double>(summary.at(place).size());
+  const auto share = [&](double count) { return 100.0 * count / vehicles; };
   measures["cbv_interactions_percent"] = share(crossed);
   measures["cbv_close_interactions_percent"] = share(close);
 }
@@ -78,7 +81,7 @@ void addSelectionMeasures(const json& summary, Measures& measures) {
   if (with_completion > 0) {
     measures["cbv_completion_percent"] = completion / static_cast<double>(with_completion);
   }
-  addInteractions(summary, selections.size(), measures);
+  addInteractions(summary, measures);
 }
 
 std::string lastFault(const json& summary) {
@@ -312,6 +315,12 @@ std::vector<BatchRun> readBatchRuns(const std::filesystem::path& results) {
     runs.push_back(std::move(run));
   }
   return runs;
+}
+
+std::string pooledVariant(const std::vector<BatchRun>& runs) {
+  std::set<std::string> variants;
+  for (const BatchRun& run : runs) variants.insert(run.record.factors.at("variant"));
+  return variants.empty() ? "" : *variants.begin();
 }
 
 bool hasLevels(const RunRecord& record, const Factors& levels) {

@@ -130,6 +130,11 @@ session::ScenarioOptions scenarioOf(const BatchRun& run);
 /// damaged record or a damaged summary.
 std::vector<BatchRun> readBatchRuns(const std::filesystem::path& results);
 
+/// Tables, figures and findings pool runs over scenarios and seeds, never over variants: of
+/// several, the runs without one count, else those of the first by name. Rows that name a variant
+/// have its runs.
+std::string pooledVariant(const std::vector<BatchRun>& runs);
+
 /// Whether the run has all these levels.
 bool hasLevels(const RunRecord& record, const Factors& levels);
 

@@ -68,7 +68,7 @@ void describeWithoutSummary(RunRecord& record, const std::string& fault, const f
   if (is_there)
     record.verdict = record::Outcome::kNotJudged;
   else
-    record.cause = fault.empty() ? "the run left no " + command.result : fault;
+    record.cause = fault.empty() ? "the run left no " + command.result : core::plainText(fault);
 }
 
 /// Status, cause and measures of a run that has ended.
@@ -103,8 +103,9 @@ fs::path nextFolder(const fs::path& results, const std::string& id) {
 }
 
 /// Gives a run a new folder with its scenario and its record, and moves the one that a silent host
-/// has, whose session may still write into it, to kLeftBehindFolder.
-void setAside(const fs::path& results, const std::string& id) {
+/// has, whose session may still write into it, to kLeftBehindFolder. False where the lease was lost
+/// meanwhile.
+bool setAside(const fs::path& results, const std::string& id, const core::Lease& lease) {
   const fs::path old = runFolder(results, id);
   core::OutputFolder aside(core::OutputFolder(results).subfolder(kLeftBehindFolder));
   core::OutputFolder next(aside.subfolder(nextFolder(results, id).filename().string()));
@@ -112,8 +113,18 @@ void setAside(const fs::path& results, const std::string& id) {
   next.write(kRecordFile, core::readFile(old / kRecordFile, "record"));
   std::string name = id;
   for (int i = 2; fs::exists(aside.path() / name); ++i) name = id + "." + std::to_string(i);
-  fs::rename(old, aside.subfolder(name));
+  const fs::path place = aside.subfolder(name);
+  if (!lease.isHeld()) return false;
+  fs::rename(old, place);
   fs::rename(next.path(), old);
+  return true;
+}
+
+/// Whether a run's folder may be written by a session of another host: that of the lease before
+/// ours, of a take-over that was cut off, or the one that its lock names.
+bool isAnotherHosts(const fs::path& results, const std::string& id, const core::Lease& lease) {
+  return lease.isFromAnotherHost() || fs::exists(nextFolder(results, id)) ||
+         core::FolderLock::isOfAnotherHost(runFolder(results, id));
 }
 
 /// Puts the folder into its place that a worker had made which was killed between two renames.
@@ -229,10 +240,12 @@ class Worker {
     finishSettingAside(options_.results, ids_[index]);
     const RunRecord record = recordAt(index);  // as it is now that nobody else writes it
     if (isDone(record)) return false;
-    if (lease->isFromAnotherHost())
-      setAside(options_.results, ids_[index]);
-    else
+    if (!isAnotherHosts(options_.results, ids_[index], *lease)) {
       core::FolderLock::removeLeftBehind(folderOf(index));  // of a session that was killed
+    } else if (!setAside(options_.results, ids_[index], *lease)) {
+      taken_.push_back(index);
+      return false;
+    }
     RunRecord next = recordOf(
         {record.id, record.factors, "", record.scenario_sha256, record.inputs, record.command});
     if (options_.compares_inputs && refusesInputs(index, next)) return false;
@@ -243,7 +256,7 @@ class Worker {
   /// Whether the run's scenario or files are not what was planned. Then its record says so, and
   /// the other runs go on.
   bool refusesInputs(std::size_t index, RunRecord& record) {
-    record.cause = changedText(folderOf(index) / "scenario.yaml", record);
+    record.cause = core::plainText(changedText(folderOf(index) / "scenario.yaml", record));
     if (record.cause.empty()) return false;
     record.status = "error";
     record.exit_code = ExitCode::kBadInput;

@@ -47,9 +47,8 @@ std::string distributionText(const metrics::SessionMeasures& measures) {
   return "One value per vehicle and decision; ± is the standard deviation over them. Shapiro-Wilk "
          "W of CBVs: speed " +
          text(known::kSpeedShapiroWilk) + ", acceleration " +
-         text(known::kAccelerationShapiroWilk) +
-         ". Wasserstein distance of CBV speeds to background vehicles within 150 m of the ego: " +
-         text(known::kSpeedWasserstein) + ".";
+         text(known::kAccelerationShapiroWilk) + ". Wasserstein distance of CBV speeds to " +
+         measures.at(known::kSpeedWasserstein).target + ": " + text(known::kSpeedWasserstein) + ".";
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ Markup egoTiles(const record::SessionResult& result) {
   const std::size_t with_cbvs = measures.count(known::kCbvEgoCollisions);
   const std::size_t all = std::max(with_cbvs, measures.count(known::kEgoCollisions));
   const session::ScenarioOptions& options = result.setup.options();
-  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
+  const bool excuses = options.verdict.excusesUnavoidable(options.fiercestMode());
   const auto excused = std::count_if(
       measures.ego_contacts.begin(), measures.ego_contacts.end(), [&](const auto& contact) {
         return record::blameOf(contact, excuses) == record::Blame::kExcused;

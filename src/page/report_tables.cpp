@@ -220,7 +220,7 @@ Markup contactTable(const record::SessionResult& result) {
                    "#Other [m/s]", "Braking avoids it"});
   auto own = result.measures.ego_contacts.begin();  // in the order of `all`
   const session::ScenarioOptions& options = result.setup.options();
-  const bool excuses = options.verdict.excusesUnavoidable(options.mode);
+  const bool excuses = options.verdict.excusesUnavoidable(options.fiercestMode());
   for (const record::TimelineContact& contact : all) {
     std::vector<Markup> cells = {timeLink(contact.time), contact.first, contact.second};
     const bool ego = own != result.measures.ego_contacts.end() &&

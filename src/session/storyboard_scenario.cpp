@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/planner_by_slot.h"
 #include "planners/registry.h"
+#include "simulation/demand_generator.h"
 #include "storyboard/scenario_reader.h"
 
 namespace cdiff::session {
@@ -52,10 +53,11 @@ const Entity& egoOf(const Scenario& scenario) {
 void requireUsableNames(const Scenario& scenario, const Entity& ego) {
   for (const Entity& entity : scenario.entities) {
     if (&entity == &ego) continue;
-    if (entity.name != core::fileName(entity.name) || entity.name == traffic::kEgoId) {
+    if (entity.name != core::fileName(entity.name) || entity.name == traffic::kEgoId ||
+        entity.name.rfind(simulation::kGeneratedPrefix, 0) == 0) {
       throw InputError(entity.source.text() + ": '" + entity.name +
                        "' cannot be the name of a vehicle; expected letters, digits, '_', '-' and "
-                       "'.', and not 'ego'");
+                       "'.', not 'ego', and not 'bg_' at the beginning");
     }
   }
 }

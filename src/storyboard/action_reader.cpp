@@ -70,7 +70,7 @@ Dynamics readOffsetDynamics(const XoscElement& element) {
   dynamics.shape = readShape(element);
   dynamics.dimension = Dynamics::Dimension::kRate;
   dynamics.value = kUsual;
-  const double acceleration = element.number("maxLateralAcc", 0.0);
+  const double acceleration = element.limit("maxLateralAcc", 0.0);
   const bool curved =
       dynamics.shape == Dynamics::Shape::kCubic || dynamics.shape == Dynamics::Shape::kSinusoidal;
   if (!curved || acceleration <= 0.0) return dynamics;

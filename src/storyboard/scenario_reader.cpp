@@ -3,6 +3,7 @@
 #include "storyboard/scenario_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
 
@@ -247,13 +248,8 @@ class NameCheck {
       require(meeting->master, action.source);
       for (const Position* place : {&meeting->master_target, &meeting->target}) checkPlace(*place);
     }
-    if (const auto* parameter = std::get_if<ParameterAction>(&what)) {
+    if (const auto* parameter = std::get_if<ParameterAction>(&what))
       requireParameter(parameter->name, action.source);
-      const std::string& value = scenario_.parameters.at(parameter->name);
-      if (parameter->change != ParameterAction::Change::kSet && !core::parseNumber(value))
-        throw core::InputError(action.source.text() + ": '" + parameter->name + "' is '" +
-                               core::shortened(value) + "', which is no number to change");
-    }
     if (const auto* entity = std::get_if<EntityAction>(&what)) {
       require(entity->entity, action.source);
       if (entity->place) checkPlace(*entity->place);
@@ -265,7 +261,11 @@ class NameCheck {
       for (const Position& waypoint : route->waypoints) checkPlace(waypoint);
   }
   /// One of scenario_runner's in the stop trigger, whose parameter is nobody's.
-  static bool isCriterion(const std::string& name) { return name.rfind("criteria_", 0) == 0; }
+  static bool isCriterion(std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char letter) { return std::tolower(letter); });
+    return name.rfind("criteria_", 0) == 0;
+  }
   void checkTrigger(const Trigger& trigger) const {
     for (const auto& group : trigger.groups) {
       for (const Condition& condition : group) {

@@ -321,21 +321,38 @@ void TrafficStage::perform(const SpeedProfileAction& action, Actor& actor,
   actor.setSpeeds(std::move(targets), performing);
 }
 
+namespace {
+
+/// Arc length on a line that goes straight on before its start and behind its end [m].
+double extendedArcLength(const geometry::Polyline& line, const Eigen::Vector2d& place) {
+  const double found = line.project(place).arc_length;
+  const double end = found <= 0.0 ? 0.0 : line.length();
+  if (found > 0.0 && found < end) return found;
+  return end + geometry::direction(line.headingAt(end)).dot(place - line.positionAt(end));
+}
+
+}  // namespace
+
+/// How far the other's reference point is ahead of the entity's, along its heading or the lanes
+/// that it follows [m].
+double TrafficStage::aheadBy(const std::string& entity, const std::string& other,
+                             bool along_lanes) const {
+  const geometry::Pose2d& own = member(entity).reference.pose;
+  const Eigen::Vector2d& place = member(other).reference.pose.position;
+  const map::Route* const route = along_lanes ? routeOf(entity) : nullptr;
+  if (route == nullptr) return own.toBody(place).x();
+  return extendedArcLength(route->path(), place) - extendedArcLength(route->path(), own.position);
+}
+
 /// How far the entity is behind the place where its distance is the wanted one [m].
 double TrafficStage::excess(const DistanceAction& action, const std::string& entity,
                             Side side) const {
-  EntityCondition gap;
-  gap.other = action.entity;
-  gap.along = Along::kLongitudinal;
-  gap.lane_frame = action.along_lanes;
-  const double between = distance(gap, entity);
+  const double between = aheadBy(entity, action.entity, action.along_lanes);
   const double lengths = action.freespace ? boxesBetween(entity, action.entity, false) : 0.0;
-  const Member& other = member(action.entity);
-  const bool ahead = member(entity).reference.pose.toBody(other.reference.pose.position).x() <= 0.0;
-  const bool to_be_ahead = side == Side::kPresent ? ahead : side == Side::kAheadOrLeft;
-  const double speed = to_be_ahead ? other.state.speed : member(entity).state.speed;
+  const bool to_be_ahead = side == Side::kPresent ? between <= 0.0 : side == Side::kAheadOrLeft;
+  const double speed = to_be_ahead ? member(action.entity).state.speed : member(entity).state.speed;
   const double target = lengths + (action.time_gap ? action.value * speed : action.value);
-  return (to_be_ahead ? target : -target) - (ahead ? between : -between);
+  return between + (to_be_ahead ? target : -target);
 }
 
 void TrafficStage::perform(const DistanceAction& action, Actor& actor,

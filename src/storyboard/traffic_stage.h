@@ -76,6 +76,7 @@ class TrafficStage : public Stage {
   bool measured(const EntityCondition& condition, const std::string& entity) const;
   double distance(const EntityCondition& condition, const std::string& entity) const;
   double boxesBetween(const std::string& entity, const std::string& other, bool lateral) const;
+  double aheadBy(const std::string& entity, const std::string& other, bool along_lanes) const;
   double alongDistance(const EntityCondition& condition, const std::string& entity,
                        const Eigen::Vector2d& target) const;
   double timeToCollision(const EntityCondition& condition, const std::string& entity) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -90,8 +91,9 @@ double XoscElement::number(const char* key, double missing) const {
 double XoscElement::limit(const char* key, double missing) const {
   constexpr double kInfinite = 1e300;
   if (!has(key)) return missing;
-  const std::string raw = node_.attribute(key).value();
-  return raw == "INF" || raw == "inf" ? kInfinite : number(key);
+  const bool computed = std::string_view(node_.attribute(key).value()).substr(0, 2) == "${";
+  const std::string value = text(key);
+  return !computed && (value == "INF" || value == "inf") ? kInfinite : number(key);
 }
 
 int XoscElement::integer(const char* key) const {

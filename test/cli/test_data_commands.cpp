@@ -204,6 +204,19 @@ TEST_F(DataCommands, CollectRefusesSessionsOfOtherSettings) {
     expectOutput("holds session arterial_exit_seed1 of other settings");
   }
   EXPECT_EQ(collect("7", {}), 3);
+  // Nor does another kind of sample hide what is there.
+  EXPECT_EQ(cdiff({"collect", "--scenarios", "arterial_exit", "--results", path("data"),
+                   "--duration", "7", "--set", "traffic.warm_up=5"}),
+            3);
+  expectOutput("of other settings");
+}
+
+TEST_F(DataCommands, ADecisionPeriodThatSamplesDoNotHaveIsRefusedBeforeAnythingIsDriven) {
+  EXPECT_EQ(cdiff({"collect", "--scenarios", "arterial_exit", "--results", path("data"), "--set",
+                   "decision_period=0.2"}),
+            3);
+  expectOutput("key 'decision_period' is 0.2 s");
+  EXPECT_FALSE(fs::exists(path("data/runs")));
 }
 
 TEST_F(DataCommands, CurvesAreDrawnOrTheirFaultIsNamed) {

@@ -91,6 +91,18 @@ TEST(EgoRanking, WithdrawnAttacksAreAShareOfDecisions) {
   EXPECT_DOUBLE_EQ(*rankEgos(runs).front().egos.front().withdrawn_percent, 25.0);
 }
 
+TEST(EgoRanking, AnEgoThatStoodHasNoRateAndIsLast) {
+  std::vector<EgoRun> runs;
+  runs.push_back(runOf("stood", "a", "1", 5));
+  runs.back().kilometers = 0.0;
+  runs.push_back(runOf("bad", "a", "1", 3));
+  const std::vector<EgoRanking> rankings = rankEgos(runs);
+  ASSERT_EQ(rankings.front().egos.size(), 2U);
+  EXPECT_EQ(rankings.front().egos[1].ego, "stood");
+  const std::string csv = rankingCsv(rankings);
+  EXPECT_NE(csv.find("stood,1,0.000,2.000,5,,,,2.500"), std::string::npos) << csv;
+}
+
 TEST(EgoRanking, SettingsAreNotPooled) {
   std::vector<EgoRun> runs;
   add("careful", 1, runs);

@@ -80,6 +80,10 @@ TEST(PooledEstimate, SaysWhenRoutesDifferMoreThanChance) {
   const PooledEstimate estimate = estimateOf(records, "cbv_collisions");
   EXPECT_DOUBLE_EQ(*estimate.dispersion, 12.0);
   EXPECT_TRUE(estimate.over_dispersed);
+  std::vector<RunRecord> more = records;  // routes without a CBV say nothing of it
+  for (const char* route : {"d", "e", "f", "g"})
+    more.push_back(runOf(route, "1", {{"cbv_collisions", 0}, {"cbv_distance_m", 0}}));
+  EXPECT_DOUBLE_EQ(*estimateOf(more, "cbv_collisions").dispersion, 12.0);
   // Garwood's 6.2006 to 20.9616 over 3 km lie within the bootstrap's 0 to 12: all or nothing of the
   // events may be drawn.
   EXPECT_EQ(estimate.interval_kind, IntervalKind::kWider);

@@ -95,6 +95,15 @@ TEST(Ranking, SaysWhichDifferenceIsNotShown) {
   EXPECT_TRUE(has(sentences[0], "touched the moving ego 1 time in")) << sentences[0];
 }
 
+// Variants with traffic of their own: no chance is told, and the page is written all the same.
+TEST(Ranking, OfSystemsWithOtherInputsTellsNoDifference) {
+  std::vector<RunRecord> records = {attacked("a", "pdm_lite", "naturalistic", 0.0),
+                                    attacked("a", "diffusion", "safety_critical", 90.0)};
+  records[0].inputs = {{"demand", "1"}};
+  records[1].inputs = {{"demand", "2"}};
+  EXPECT_EQ(sentencesOf(records).back(), "Not shown to be harder than pdm_lite.");
+}
+
 // 46 strikes on an ego in a jam against 6 on a moving one: the latter is harder.
 TEST(Ranking, GoesByContactsOfTheMovingEgo) {
   std::vector<RunRecord> records = {attacked("a", "two_stage_pid", "safety_critical", 5.0, 46.0),

@@ -115,6 +115,18 @@ TEST_F(WorkerTest, AFolderThatIsBeingMovedIsAnothersOrPutInPlace) {
   EXPECT_FALSE(fs::exists(next));
 }
 
+// The lease of a silent host is gone once another has claimed the run, also one that was killed
+// then.
+TEST_F(WorkerTest, ATakeOverThatWasCutOffIsBegunAnew) {
+  announce({"good"});
+  core::OutputFolder(runFolder(options_.results, "good0")).write("summary.json", "late");
+  fs::create_directories(options_.results / kLeftBehindFolder / ".next.good0");
+  work();
+  EXPECT_EQ(record("good0").status, "completed");
+  EXPECT_EQ(core::readFile(options_.results / kLeftBehindFolder / "good0" / "summary.json", "late"),
+            "late");
+}
+
 TEST_F(WorkerTest, WaitsForWhatAnotherHostHasAndTakesItOverOnceItIsSilent) {
   announce({"good"});
   writeForeignLease(options_.results, "good0");

@@ -163,6 +163,10 @@ TEST_F(StoryboardTrafficStage, ADistanceAlongTheLaneIsKeptToo) {
   distance.value = 30.0;
   EXPECT_TRUE(begin(distance)->over);
   EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 70.0, 1e-6);
+  begin(placeAt(150.0));  // the line that it follows begins there, behind the ego
+  distance.side = Side::kAheadOrLeft;
+  EXPECT_TRUE(begin(distance)->over);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 130.0, 1e-6);
 }
 
 // One drives off the lanes in the midst of a session: that is nothing wrong with the file.

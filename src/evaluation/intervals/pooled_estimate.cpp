@@ -67,8 +67,11 @@ double chiSquare(const RouteSums& routes, double rate) {
 }
 
 void addDispersion(const RouteSums& routes, PooledEstimate& estimate) {
-  if (routes.size() < 2 || estimate.events == 0) return;
-  const auto freedom = static_cast<double>(routes.size() - 1);
+  // Routes without exposure, as without a CBV, say nothing.
+  const auto exposed = std::count_if(routes.begin(), routes.end(),
+                                     [](const RouteSum& route) { return route.weight > 0.0; });
+  if (exposed < 2 || estimate.events == 0) return;
+  const auto freedom = static_cast<double>(exposed - 1);
   const double chi_square = chiSquare(routes, *estimate.value);
   estimate.dispersion = chi_square / freedom;
   estimate.over_dispersed =

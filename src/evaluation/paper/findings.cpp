@@ -150,13 +150,18 @@ class Findings {
     finding.b = b.name;
     finding.paper_difference = *a.paper.mean - *b.paper.mean;
     const std::string& key = column.rift_key.empty() ? column.key : column.rift_key;
-    measure(CellSums(runsWith(runs_, a.levels), key, column.weight),
-            CellSums(runsWith(runs_, b.levels), key, column.weight), poolingAt(key), bootstrap_,
-            finding);
+    measure(CellSums(runsOf(a.levels), key, column.weight),
+            CellSums(runsOf(b.levels), key, column.weight), poolingAt(key), bootstrap_, finding);
     found.push_back(finding);
   }
 
+  std::vector<const BatchRun*> runsOf(Factors levels) const {
+    levels.emplace("variant", variant_);
+    return runsWith(runs_, levels);
+  }
+
   const std::vector<BatchRun>& runs_;
+  std::string variant_ = pooledVariant(runs_);
   RouteBootstrap bootstrap_;
 };
 

@@ -21,8 +21,9 @@ std::string countBeside(const metrics::MeasureDefinition& mean) {
   return place.substr(0, place.rfind('/')) + "/n";
 }
 
-// Columns. Times and speeds are means of the sessions' figures; rates are weighted by what they are
-// rates of, so that they are the rate over all runs of a seed.
+// Columns. 2D-TTC is weighted by its decisions, also RIFT's; rates are weighted by what they are
+// rates of, so that they are the rate over all runs of a seed; others are means of the sessions'
+// figures.
 
 TableColumn timeToCollision() {
   return {"2D-TTC", "s", known::kTtcMean.place, countBeside(known::kTtcMean), known::kRiftTtc.place,

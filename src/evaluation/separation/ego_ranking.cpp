@@ -138,13 +138,21 @@ EgoRun checkedRun(const fs::path& folder, const fs::path& base) {
 std::vector<EgoRun> readBatch(const fs::path& folder, const fs::path& base) {
   std::vector<EgoRun> runs;
   std::map<std::string, std::set<std::string>> planners;  // by variant
+  std::map<std::string, std::set<std::string>> profiles;  // of guidance, by setting
   std::vector<std::string> variants;                      // of the runs
+  std::vector<std::string> guidance;                      // of the runs
   for (const RunRecord& record : readRecords(folder)) {
     if (!record.complete()) continue;
     runs.push_back(checkedRun(runFolder(folder, record.id), base));
     const std::string& variant = record.factors.at("variant");
     planners[variant].insert(runs.back().ego);
     variants.push_back(variant);
+    guidance.push_back(record.factors.at("guidance_profile"));
+    profiles[runs.back().setting].insert(guidance.back());
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (profiles[runs[i].setting].size() > 1)
+      runs[i].setting += ", guidance " + levelName("guidance_profile", guidance[i]);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::string& variant = variants[i];
@@ -343,9 +351,12 @@ EgoRanking rankSetting(const std::string& setting, const std::map<std::string, R
   EgoRanking ranking;
   ranking.setting = setting;
   for (const auto& [ego, runs] : egos) ranking.egos.push_back(figuresOf(ego, runs, bootstrap));
-  std::stable_sort(
-      ranking.egos.begin(), ranking.egos.end(),
-      [](const EgoFigures& left, const EgoFigures& right) { return left.per_km < right.per_km; });
+  std::stable_sort(ranking.egos.begin(), ranking.egos.end(),
+                   [](const EgoFigures& left, const EgoFigures& right) {
+                     const bool left_stood = left.kilometers <= 0.0;  // no rate: last
+                     const bool right_stood = right.kilometers <= 0.0;
+                     return left_stood != right_stood ? right_stood : left.per_km < right.per_km;
+                   });
   const auto odd = ratesOfParity(egos, true);
   const auto even = ratesOfParity(egos, false);
   if (odd && even) ranking.odd_even = metrics::rankCorrelation(*odd, *even);

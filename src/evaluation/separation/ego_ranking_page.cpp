@@ -21,8 +21,9 @@ using core::Markup;
 
 std::string fixedText(double value, int decimals) { return core::formatFixed(value, decimals); }
 
-/// "12 / 3.4 km = 3.53 [1.82, 6.17]".
+/// "12 / 3.4 km = 3.53 [1.82, 6.17]"; "5, no distance" of an ego that stood.
 std::string rateText(const EgoFigures& ego) {
+  if (ego.kilometers <= 0.0) return std::to_string(ego.contacts) + ", no distance";
   return std::to_string(ego.contacts) + " / " + fixedText(ego.kilometers, 2) +
          " km = " + fixedText(ego.per_km, 2) + " [" + fixedText(ego.per_km_interval.low, 2) + ", " +
          fixedText(ego.per_km_interval.high, 2) + "]";
@@ -211,9 +212,10 @@ std::vector<std::string> csvCells(const std::string& setting, std::size_t rank,
                                     std::to_string(ego.runs)};
   for (const double value : {ego.kilometers, ego.minutes}) cells.push_back(fixedText(value, 3));
   cells.push_back(std::to_string(ego.contacts));
+  for (const double value : {ego.per_km, ego.per_km_interval.low, ego.per_km_interval.high})
+    cells.push_back(ego.kilometers > 0.0 ? fixedText(value, 3) : "");
   for (const double value :
-       {ego.per_km, ego.per_km_interval.low, ego.per_km_interval.high, ego.per_minute,
-        ego.per_minute_interval.low, ego.per_minute_interval.high})
+       {ego.per_minute, ego.per_minute_interval.low, ego.per_minute_interval.high})
     cells.push_back(fixedText(value, 3));
   for (const ContactKind kind : kContactKinds) cells.push_back(std::to_string(countOf(ego, kind)));
   for (const std::size_t count : {ego.standing, ego.slow, ego.near_misses})

@@ -78,7 +78,8 @@ std::string baseName(const std::string& node);
 
 /// Reads the messages of a topic's publishers (full names; none: of any sender). Another's becomes
 /// an empty message, its bytes unread: a list's length that is none makes roscpp fill memory for
-/// seconds. Nodelets of one process share what one of their threads has read, so it keeps no count.
+/// seconds. Nodelets of one process share what one of them has read, so it keeps no count; a
+/// foreign nodelet that listened first reads as roscpp does.
 template <class Message>
 class MessageReader
     : public ros::SubscriptionCallbackHelperT<const ros::MessageEvent<const Message>&> {

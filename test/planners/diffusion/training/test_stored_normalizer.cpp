@@ -70,8 +70,10 @@ TEST_F(StoredNormalizerTest, ARunThatGoesOnTakesTheCheckpoints) {
 
 TEST_F(StoredNormalizerTest, AStageTakesThatOfTheStageItStartsFrom) {
   write("encoder", 1.0);
-  write("denoiser", 3.0);
   EXPECT_EQ(chosen("fine_tune", false, true), 1.0);
+  write("denoiser", 3.0);
+  // It would be exported with the fine-tuned encoder.
+  EXPECT_THROW(chosen("fine_tune", false, true), core::InputError);
   EXPECT_EQ(chosen("joint", false, true), 3.0);
   EXPECT_EQ(chosen("export", false, true), 3.0);
   write("joint", 4.0);
