@@ -165,8 +165,9 @@ TEST_F(StoryboardTrafficStage, ADistanceAlongTheLaneIsKeptToo) {
   EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 70.0, 1e-6);
   begin(placeAt(150.0));  // the line that it follows begins there, behind the ego
   distance.side = Side::kAheadOrLeft;
+  distance.value = 70.0;
   EXPECT_TRUE(begin(distance)->over);
-  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 130.0, 1e-6);
+  EXPECT_NEAR(stage_.actor("car").reference().pose.position.x(), 170.0, 1e-6);
 }
 
 // One drives off the lanes in the midst of a session: that is nothing wrong with the file.
