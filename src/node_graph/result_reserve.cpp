@@ -14,6 +14,7 @@
 #include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_files.h"
 #include "page/result_writer.h"
+#include "record/result_folder.h"
 
 namespace cdiff::node_graph {
 namespace {
