@@ -295,16 +295,19 @@ double Actor::lastSpeed(const Trajectory& course, double otherwise) {
   return way.norm() / (course.times[count - 1] - course.times[count - 2]);
 }
 
+/// On a trajectory without times.
+void Actor::advanceOnLine(double meters) {
+  Trajectory& course = *trajectory_;
+  course.driven += meters;
+  const geometry::Pose2d pose = course.line.extendedPoseAt(course.driven);
+  reference_ = {pose, course.line.pointAt(course.driven).z()};
+  if (course.driven >= course.line.length()) endTrajectory();
+}
+
 void Actor::advanceOnTrajectory(double time, double step, double meters) {
   Trajectory& course = *trajectory_;
   if (lateral_ && lateral_->stopped) return endTrajectory();
-  if (course.times.empty()) {
-    course.driven += meters;
-    const geometry::Pose2d pose = course.line.extendedPoseAt(course.driven);
-    reference_ = {pose, course.line.pointAt(course.driven).z()};
-    if (course.driven >= course.line.length()) endTrajectory();
-    return;
-  }
+  if (course.times.empty()) return advanceOnLine(meters);
   constexpr double kTolerance = 1e-9;  // [s]
   const auto after = std::upper_bound(course.times.begin(), course.times.end(), time + kTolerance);
   const auto next = static_cast<std::size_t>(after - course.times.begin());

@@ -117,6 +117,7 @@ class Actor {
   void advanceOnLanes(double meters, double step);
   void advanceStraight(double meters);
   static double lastSpeed(const Trajectory& course, double otherwise);
+  void advanceOnLine(double meters);
   void advanceOnTrajectory(double time, double step, double meters);
   void endTrajectory();
 

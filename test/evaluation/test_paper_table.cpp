@@ -175,7 +175,7 @@ TEST(PaperTable, CsvHoldsThePublishedValuesBesideOurs) {
             "rift_repository_std,mean,std,interval_95_low,interval_95_high,seeds,routes,events,km,"
             "runs,runs_with_figure,runs_failed,runs_not_run,note\n"
             "ours,rate,1/km,clean,5,0.5,6,0.25,2,,,,1,1,,,1,1,0,0,\n"
-            "ours,rate,1/km,rift_compat,5,0.5,6,0.25,,,,,0,1,,,1,1,0,0,no run has this measure\n");
+            "ours,rate,1/km,rift_compat,5,0.5,6,0.25,,,,,0,0,,,1,0,0,0,no run has this measure\n");
 }
 
 TEST(PaperTable, NamesTheSubjectInAKey) {

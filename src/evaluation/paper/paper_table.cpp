@@ -36,11 +36,11 @@ std::vector<std::string> ownCells(const TableCell& cell, bool rift) {
           core::csvNumber(low),
           core::csvNumber(high),
           std::to_string(statistics.n),
-          std::to_string(cell.routes),
+          std::to_string(rift ? cell.rift_routes : cell.routes),
           counted ? std::to_string(*cell.events) : "",
           counted ? core::csvNumber(cell.kilometers) : "",
           std::to_string(cell.runs),
-          std::to_string(cell.used),
+          std::to_string(rift ? cell.rift_used : cell.used),
           std::to_string(cell.failed),
           std::to_string(cell.missing),
           statistics.mean     ? ""
@@ -74,7 +74,8 @@ bool anyFigure(const std::vector<TableCell>& row) {
 
 bool showsIntervals(const std::vector<TableCell>& row) {
   return anyFigure(row) && std::all_of(row.begin(), row.end(), [](const TableCell& cell) {
-           return !cell.seeds.mean || showsIntervals(cell.routes);
+           return (!cell.seeds.mean || showsIntervals(cell.routes)) &&
+                  (!cell.rift.mean || showsIntervals(cell.rift_routes));
          });
 }
 
@@ -146,6 +147,21 @@ std::string otherModes(const Factors& levels, const std::vector<BatchRun>& runs)
   return core::joinText({modes.begin(), modes.end()}, ", ");
 }
 
+void countRuns(const std::vector<const BatchRun*>& runs, TableCell& cell) {
+  cell.runs = runs.size();
+  for (const BatchRun* run : runs) {
+    cell.failed += run->record.failed();
+    cell.missing += !run->record.complete() && !run->record.failed();
+  }
+}
+
+void addRift(const CellSums& sums, const std::string& key, RouteBootstrap& bootstrap,
+             TableCell& cell) {
+  cell.rift = sums.overSeeds(bootstrap, poolingAt(key));
+  cell.rift_routes = sums.routes();
+  cell.rift_used = sums.used();
+}
+
 TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& column,
                    const std::vector<BatchRun>& runs, RouteBootstrap& bootstrap) {
   Factors levels = row.levels;
@@ -154,15 +170,10 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
   TableCell cell;
   if (index < row.paper.size()) cell.paper = row.paper[index];
   if (index < row.repository.size()) cell.repository = row.repository[index];
-  cell.runs = own.size();
-  for (const BatchRun* run : own) {
-    cell.failed += run->record.failed();
-    cell.missing += !run->record.complete() && !run->record.failed();
-  }
+  countRuns(own, cell);
   const std::string weight = withSubject(column.weight, row.subject);
   if (!column.rift_key.empty())
-    cell.rift =
-        CellSums(own, column.rift_key, weight).overSeeds(bootstrap, poolingAt(column.rift_key));
+    addRift(CellSums(own, column.rift_key, weight), column.rift_key, bootstrap, cell);
   const CellSums sums(own, withSubject(column.key, row.subject), weight);
   const metrics::PoolingRule rule = poolingAt(column.key);
   if (rule.kind == metrics::Pooling::kRate) {

@@ -74,6 +74,8 @@ struct TableCell {
   std::size_t failed = 0;             ///< those of them that broke
   std::size_t missing = 0;            ///< those of them that were interrupted or not run
   std::size_t used = 0;               ///< those of them that have the measure
+  std::size_t rift_routes = 0;        ///< routes of the runs that have it by RIFT's definition
+  std::size_t rift_used = 0;          ///< how many those are
   std::string note;                   ///< why it is empty: not run, ...
 };
 

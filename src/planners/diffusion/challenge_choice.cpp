@@ -70,21 +70,30 @@ void ChallengeChoice::add(const Rollout& rollout, double score, PlanCandidates& 
   candidates.scores.push_back({0, score, 0});
 }
 
-ChosenPlan ChallengeChoice::choose(std::uint64_t tick, const PlannedVehicle& vehicle,
-                                   const DiffusionSituation& situation, PlanCandidates candidates) {
-  const traffic::VehicleState& now = vehicle.task->vehicle->state;
-  const std::size_t sampled = candidates.plans.size();
-  std::vector<std::size_t> origins(sampled);  // the sample that a plan was made of
+/// Gives the sampled plans their scores and adds each with the retimings that fit its length. Gives
+/// for every plan the sample that it was made of.
+std::vector<std::size_t> ChallengeChoice::addRetimed(const DiffusionSituation& situation,
+                                                     double speed,
+                                                     PlanCandidates& candidates) const {
+  std::vector<std::size_t> origins(candidates.plans.size());
   std::iota(origins.begin(), origins.end(), 0);
-  for (std::size_t i = 0; i < sampled; ++i) {
+  for (std::size_t i = 0, sampled = origins.size(); i < sampled; ++i) {
     candidates.scores[i].value = situation.objectives.front()->score(candidates.plans[i]).value;
     for (const Retiming& retiming : kRetimings) {
       if (retiming.row >= candidates.plans[i].rows()) continue;
       origins.push_back(i);
-      const Rollout later = retimed(candidates.plans[i], candidates.driven[i], retiming, now.speed);
-      add(choice_.drivenBy(later, now.speed), candidates.scores[i].value, candidates);
+      const Rollout later = retimed(candidates.plans[i], candidates.driven[i], retiming, speed);
+      add(choice_.drivenBy(later, speed), candidates.scores[i].value, candidates);
     }
   }
+  return origins;
+}
+
+ChosenPlan ChallengeChoice::choose(std::uint64_t tick, const PlannedVehicle& vehicle,
+                                   const DiffusionSituation& situation, PlanCandidates candidates) {
+  const traffic::VehicleState& now = vehicle.task->vehicle->state;
+  const std::size_t sampled = candidates.plans.size();
+  std::vector<std::size_t> origins = addRetimed(situation, now.speed, candidates);
   const std::size_t varied = candidates.plans.size();
   Rollout braking = candidates.plans.front();
   braking.rightCols<traffic::kActionColumns>().rowwise() =

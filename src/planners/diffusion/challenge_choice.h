@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "e2e_cdiff/planning/challenge.h"
 #include "planners/diffusion/plan_choice.h"
@@ -33,6 +34,8 @@ class ChallengeChoice {
 
  private:
   std::optional<traffic::Rollout> keptPlan(std::uint64_t tick, const PlannedVehicle& vehicle) const;
+  std::vector<std::size_t> addRetimed(const DiffusionSituation& situation, double speed,
+                                      PlanCandidates& candidates) const;
   static void add(const traffic::Rollout& rollout, double score, PlanCandidates& candidates);
 
   const guidance::GuidanceOptions& guidance_;
