@@ -16,6 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// rosbag keeps an entry of some 1.3 kB in RAM for each chunk. A long session gets larger chunks,
+/// so that it takes less than 1 MB an hour.
+constexpr std::uint64_t kLongBag = std::uint64_t{64} << 20;   // [bytes]
+constexpr std::uint32_t kLongChunk = std::uint32_t{3} << 20;  // [bytes]
+
 /// A bag takes no stamp of zero.
 ros::Time bagStamp(const ros::Time& stamp) { return std::max(stamp, ros::TIME_MIN); }
 
@@ -105,6 +110,8 @@ void BagFile::writeTick(const TickMessages& tick) {
       if (message) put(topic, stamp, message);
     }
   }
+  if (bag_->getSize() > kLongBag && bag_->getChunkThreshold() < kLongChunk)
+    bag_->setChunkThreshold(kLongChunk);
 }
 
 void BagFile::finish() {
