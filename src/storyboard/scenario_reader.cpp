@@ -2,10 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "storyboard/scenario_reader.h"
 
+#include <strings.h>
+
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <set>
+#include <string_view>
 
 #include "core/text.h"
 #include "storyboard/reading.h"
@@ -261,10 +263,9 @@ class NameCheck {
       for (const Position& waypoint : route->waypoints) checkPlace(waypoint);
   }
   /// One of scenario_runner's in the stop trigger, whose parameter is nobody's.
-  static bool isCriterion(std::string name) {
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char letter) { return std::tolower(letter); });
-    return name.rfind("criteria_", 0) == 0;
+  static bool isCriterion(const std::string& name) {
+    constexpr std::string_view kBegin = "criteria_";
+    return ::strncasecmp(name.c_str(), kBegin.data(), kBegin.size()) == 0;
   }
   void checkTrigger(const Trigger& trigger) const {
     for (const auto& group : trigger.groups) {

@@ -95,7 +95,7 @@ TEST(Ranking, SaysWhichDifferenceIsNotShown) {
   EXPECT_TRUE(has(sentences[0], "touched the moving ego 1 time in")) << sentences[0];
 }
 
-// Variants with traffic of their own: no chance is told, and the page is written all the same.
+// Variants with traffic of their own cannot be compared; the page names no difference.
 TEST(Ranking, OfSystemsWithOtherInputsTellsNoDifference) {
   std::vector<RunRecord> records = {attacked("a", "pdm_lite", "naturalistic", 0.0),
                                     attacked("a", "diffusion", "safety_critical", 90.0)};
