@@ -11,8 +11,10 @@
 
 namespace cdiff::node_graph {
 
-// Where a session of the node graph puts its files, and the result folder that the traffic
-// simulator writes when the metrics node cannot: a session always leaves a result that can be read.
+// Where a session of the node graph puts its files, and the result that is written when the metrics
+// node cannot: a session always leaves one that can be read. Called by the nodes that begin a
+// session (traffic simulator, replay, CARLA), by the metrics node, which ends it, and by the
+// program that writes the result of a session that never began.
 
 /// "roslaunch", as results name this deployment.
 inline constexpr const char* kDeployment = "roslaunch";
