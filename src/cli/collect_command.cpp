@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "cli/batch_engine.h"
 #include "cli/commands.h"
@@ -191,8 +192,19 @@ std::vector<std::string> drivingWords(std::vector<std::string> words) {
   return words;
 }
 
+/// Files of the scenario that have changed, weights among them: samples of another program stay
+/// good ones.
+std::string changedFiles(const evaluation::RunRecord& there, const evaluation::PlannedRun& run) {
+  if (there.inputs.empty()) return "";  // of an earlier version
+  evaluation::InputHashes before = there.inputs;
+  evaluation::InputHashes now = run.inputs;
+  before.erase("program");
+  now.erase("program");
+  return evaluation::changedInputs(before, now);
+}
+
 /// Throws InputError where samples or a scene of the session are there that were asked for with
-/// other settings; those without a record, of an earlier version, count as they are.
+/// other settings or files; those without a record, of an earlier version, count as they are.
 void requireSameSettings(const evaluation::PlannedRun& run, const CollectRequest& request) {
   if (!fs::exists(collection::shardFile(request, run.id)) &&
       !fs::exists(collection::sceneFile(request, run.id)))
@@ -200,21 +212,27 @@ void requireSameSettings(const evaluation::PlannedRun& run, const CollectRequest
   const fs::path& results = request.results;
   const fs::path file = evaluation::runFolder(results, run.id) / evaluation::kRecordFile;
   const auto there = evaluation::readRecord(file);
-  if (!there || (there->scenario_sha256 == run.scenario_sha256 &&
-                 drivingWords(there->command.words) == drivingWords(run.command.words)))
-    return;
-  throw core::InputError("'" + results.string() + "' holds session " + run.id +
-                         " of other settings (" + file.string() +
+  if (!there) return;
+  const bool same = there->scenario_sha256 == run.scenario_sha256 &&
+                    drivingWords(there->command.words) == drivingWords(run.command.words);
+  const std::string changed = changedFiles(*there, run);
+  if (same && changed.empty()) return;
+  throw core::InputError("'" + results.string() + "' holds session " + run.id + " of other " +
+                         (same ? "files: " + changed : "settings") + " (" + file.string() +
                          "); give another --results or another --first-seed");
 }
 
 /// The sessions that are still to be driven.
 std::vector<evaluation::PlannedRun> planOf(const std::vector<CollectRequest>& sessions) {
   std::vector<evaluation::PlannedRun> plan;
+  std::set<std::string> ids;
   evaluation::InputHasher hasher;
   for (const CollectRequest& request : sessions) {
     const auto settings = collection::resolveCollection(request);
     evaluation::PlannedRun run = runOf(request, settings, hasher);
+    if (!ids.insert(run.id).second)
+      throw core::InputError("session " + run.id + " is there twice (scenario '" +
+                             request.scenario + "'); give every scenario once and a name of its own");
     requireSameSettings(run, request);
     if (!isDone(request, run.id)) plan.push_back(std::move(run));
   }

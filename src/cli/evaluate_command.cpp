@@ -6,6 +6,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "cli/batch_engine.h"
@@ -81,6 +82,12 @@ std::string suiteOf(const std::string& name) {
   return core::isFile(fs::path(name) / "suite.yaml") ? fs::absolute(name).string() : name;
 }
 
+/// Without the slash at the end of a folder.
+std::string suiteName(const std::string& name) {
+  const fs::path path = fs::path(name).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 /// The matrix on its own routes or on those of the arguments; without a matrix these routes with
 /// everything as scenarios have it.
 MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
@@ -92,10 +99,12 @@ MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
         "give a matrix (file or shipped name), or routes: --suite NAME, or --bench2drive FILE "
         "--networks DIR, or a matrix and the routes to run it on instead of its own");
   }
+  if (!bench2drive && (!arguments.networks.empty() || !arguments.routes.empty()))
+    throw InputError("--networks and --routes are for --bench2drive FILE, which is missing");
   if (suite && bench2drive)
     throw InputError("give either --suite or --bench2drive: a batch has routes of one kind");
   MatrixOptions matrix;
-  matrix.name = suite ? fs::path(arguments.suite).filename().string() : "bench2drive";
+  matrix.name = suite ? suiteName(arguments.suite) : "bench2drive";
   if (!arguments.matrix.empty()) matrix = evaluation::loadMatrix(arguments.matrix);
   if (!suite && !bench2drive) return matrix;
   matrix.scenarios.clear();
@@ -104,19 +113,30 @@ MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
   return matrix;
 }
 
-/// One more ego of a matrix, "NAME" or "NAME key=value ...": a variant where its egos are variants,
-/// else one more planner.
+/// One more ego of a matrix, "NAME" or "NAME key=value ...": one more planner, or a variant where
+/// it has options or where the matrix has variants, beside which its planners become variants.
 void addEgo(const std::string& ego, MatrixOptions& matrix) {
   const std::string name = ego.substr(0, ego.find(' '));
   if (!matrix.combinations.empty()) {
     throw InputError("--ego " + name +
                      ": the matrix names combinations; expected one with ego_planners or variants");
   }
-  if (matrix.variants.empty() && name == ego) {
-    matrix.ego_planners.push_back(name);
-  } else {
-    matrix.variants.push_back(name + ": ego_planner=" + ego);
+  std::vector<std::string>& egos = matrix.ego_planners;
+  if (matrix.variants.empty()) {
+    if (name == ego && !egos.empty()) {
+      egos.push_back(name);
+      return;
+    }
+    if (egos.empty()) matrix.variants = {"scenario:"};
+    for (const std::string& planner : egos)
+      matrix.variants.push_back(planner + ": ego_planner=" + planner);
+    egos.clear();
+  } else if (egos.size() > 1) {
+    throw InputError("--ego " + name +
+                     ": the matrix combines several ego_planners with variants; expected one of "
+                     "the two. Add it to the matrix");
   }
+  matrix.variants.push_back(name + ": ego_planner=" + ego);
 }
 
 MatrixOptions matrixOf(const EvaluateArguments& arguments) {
@@ -235,6 +255,20 @@ std::vector<evaluation::PlannedRun> planOf(const MatrixOptions& matrix,
   return evaluation::planFittingRuns(matrix, source, left_out);
 }
 
+/// Runs of a scenario that has another name by now, or is gone, would count in tables and pages.
+void requireNoOthers(const fs::path& results, const std::vector<evaluation::PlannedRun>& plan) {
+  std::set<std::string> ids;
+  for (const evaluation::PlannedRun& run : plan) ids.insert(run.id);
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(results / "runs", none)) {
+    const std::string id = entry.path().filename().string();
+    if (ids.count(id) != 0 || !core::isFile(entry.path() / evaluation::kRecordFile)) continue;
+    throw InputError("'" + entry.path().string() +
+                     "' holds a run that the matrix does not have any more; give another "
+                     "--results, or begin again (--overwrite)");
+  }
+}
+
 /// On standard error, and in a file for the batch's page.
 void noteLeftOut(core::OutputFolder& output, const std::vector<std::string>& left_out) {
   if (left_out.empty()) {
@@ -283,6 +317,7 @@ int evaluate(const EvaluateArguments& arguments) {
   core::OutputFolder output(results, "cdiff evaluate");
   requireFolder(results, arguments);
   if (!arguments.attach) requireNoWorker(results);
+  if (arguments.resume) requireNoOthers(results, plan);
   prepareFolder(output, matrix, arguments.overwrite);
   std::cerr << evaluation::recordOpening(matrix, results) << repeated;
   noteLeftOut(output, left_out);

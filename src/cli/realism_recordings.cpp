@@ -3,6 +3,7 @@
 #include "cli/realism_recordings.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -102,7 +103,10 @@ std::vector<Recording> readLogs(const std::vector<fs::path>& files) {
 
 realism::PooledDrivers pooledDrivers(const std::vector<fs::path>& folders) {
   Drivers drivers;
+  std::set<fs::path> seen;
   for (const fs::path& given : folders) {
+    if (!seen.insert(fs::weakly_canonical(given)).second)
+      throw InputError("'" + given.string() + "' is there twice; its courses would count twice");
     const fs::path folder = fs::absolute(given).lexically_normal();
     if (core::isFile(folder / "trace.csv")) {
       const bool slash = !folder.has_filename();

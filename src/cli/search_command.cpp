@@ -99,8 +99,9 @@ std::vector<RunRecord> runBatch(const std::vector<evaluation::PlannedRun>& plan,
 int exitCodeOf(const evaluation::Search& search, const SearchArguments& arguments) {
   if (core::stopRequested()) return ExitCode::kInterrupted;
   const auto& cases = search.cases();
-  const bool broke =
-      std::any_of(cases.begin(), cases.end(), [](const auto& one) { return one.record.failed(); });
+  const bool broke = std::any_of(cases.begin(), cases.end(), [](const auto& one) {
+    return one.record.failed() || one.careful_broke;
+  });
   const bool cut = cases.size() < arguments.request.budget && !arguments.engine.prints();
   return broke || cut ? ExitCode::kRunTimeError : ExitCode::kPassed;
 }

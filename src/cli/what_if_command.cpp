@@ -85,7 +85,7 @@ std::string sharesText(const std::vector<Answer>& answers, const std::string& dr
     return answer.open.avoids() && std::all_of(answer.shifted.begin(), answer.shifted.end(),
                                                [](const auto& shift) { return shift.second; });
   };
-  return driver + " avoids, others answering to it (avoidable): " +
+  return driver + " avoids, others answering to it: " +
          count([](const Answer& answer) { return answer.closed.avoids(); }) +
          "\n  others as recorded: " +
          count([](const Answer& answer) { return answer.open.avoids(); }) +

@@ -32,9 +32,7 @@ traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
 bool DisplacedSamples::free(const traffic::Vehicle& vehicle,
                             const traffic::TrafficSnapshot& snapshot) const {
   const geometry::OrientedBox box = vehicle.box();
-  for (const Eigen::Vector2d& corner : box.corners()) {
-    if (!setup_.drivableArea().contains(corner, vehicle.state.elevation)) return false;
-  }
+  if (setup_.drivableArea().signedDistance(box, vehicle.state.elevation) < 0.0) return false;
   return std::none_of(
       snapshot.vehicles.begin(), snapshot.vehicles.end(), [&](const traffic::Vehicle& other) {
         return other.id != vehicle.id && !traffic::onDifferentLevels(vehicle, other) &&

@@ -47,10 +47,7 @@ bool collides(const traffic::Vehicle& vehicle, const traffic::TrafficSnapshot& s
 }
 
 bool offRoad(const traffic::Vehicle& vehicle, const map::DrivableArea& area) {
-  const auto corners = vehicle.box().corners();
-  return std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
-    return !area.contains(corner, vehicle.state.elevation);
-  });
+  return area.signedDistance(vehicle.box(), vehicle.state.elevation) < 0.0;
 }
 
 }  // namespace

@@ -31,6 +31,9 @@ std::string fileName(std::string text);
 /// Parts of `text` between separators; runs of separators count as one, no empty parts.
 std::vector<std::string> splitText(std::string_view text, char separator);
 
+/// `text` with small letters for the capitals of ASCII.
+std::string lowerCase(std::string_view text);
+
 /// Whether `text` ends with `end`.
 bool endsWith(std::string_view text, std::string_view end);
 

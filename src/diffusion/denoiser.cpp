@@ -43,6 +43,7 @@ void RouteScaledDenoiser::setContexts(const std::vector<Context>& contexts) {
   for (Context& context : without) {
     context.route.clear();
     context.target_speed.reset();
+    context.previous.clear();  // as in training, which leaves the image alone
   }
   without_route_.setContexts(without);
   rows_ = contexts.size() * static_cast<std::size_t>(architecture().horizon);

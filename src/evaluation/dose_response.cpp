@@ -65,6 +65,21 @@ void requireOneSystem(const std::vector<RunRecord>& records) {
   }
 }
 
+/// Within a dose: profiles may be what the doses of an axis are.
+void requireOneProfile(const std::vector<RunRecord>& records) {
+  std::map<std::string, std::set<std::string>> profiles;
+  for (const RunRecord& record : records) {
+    const std::string& variant = record.factors.at("variant");
+    if (doseOf(variant)) profiles[variant].insert(record.factors.at("guidance_profile"));
+  }
+  for (const auto& [variant, levels] : profiles) {
+    if (levels.size() > 1)
+      throw InputError("dose '" + variant + "' was given with the guidance profiles " +
+                       core::joinText({levels.begin(), levels.end()}, ", ") +
+                       "; evaluate one of them at a time");
+  }
+}
+
 /// The scenarios that have a run at every dose.
 std::set<std::string> sharedRoutes(const Axis& axis) {
   std::map<std::string, std::set<double>> doses;
@@ -168,6 +183,7 @@ std::vector<DoseResponse> doseResponses(const std::vector<RunRecord>& records,
                                         const std::vector<std::string>& measures) {
   checkMeasureNames(measures);
   requireOneSystem(records);
+  requireOneProfile(records);
   const std::vector<Axis> axes = axesOf(records);
   if (axes.empty())
     throw InputError(

@@ -89,7 +89,12 @@ bool Executor::staysOrIsCounted(std::size_t index) {
   if (cause.empty() && !result.empty() && !fs::is_regular_file(folderOf(index) / result))
     cause = result + " missing";
   if (!cause.empty()) {
-    if (isChosen(index)) repeated_[cause].push_back(plan_[index].id);
+    if (isChosen(index))
+      repeated_[cause].push_back(plan_[index].id);
+    else if (earlier->complete())
+      stale_.insert(index);
+    else
+      records_.back() = *earlier;
     return false;
   }
   core::OutputFolder(folderOf(index)).removeUnfinished();  // of a batch that was killed there
@@ -111,7 +116,8 @@ void Executor::informCaller() const {
 void Executor::writeRecords() const {
   std::deque<std::size_t> missing = now_;
   for (const std::size_t index : later_) {
-    if (!fs::exists(folderOf(index) / kRecordFile)) missing.push_back(index);
+    if (stale_.count(index) != 0 || !fs::exists(folderOf(index) / kRecordFile))
+      missing.push_back(index);
   }
   std::vector<std::string> names;
   for (const std::size_t index : missing) names.push_back(plan_[index].id);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,7 @@ class Executor {
   std::map<std::string, std::vector<std::string>> repeated_;  ///< ids by cause
   std::deque<std::size_t> now_;
   std::deque<std::size_t> later_;  ///< not chosen
+  std::set<std::size_t> stale_;    ///< of these, complete ones whose result does not stand any more
   std::vector<std::string> queue_;
   std::map<std::string, RunRecord> ended_;
 };

@@ -71,8 +71,10 @@ void compareFirst(const std::vector<RunRecord>& records, const SystemNames& name
     p.push_back(probabilityOf(first, runsOf(ranking.systems[i], records), ranking.measure));
     others.push_back(names.of(ranking.systems[i].factors));
   }
+  // The first was chosen by the same data, so that every pair of systems counts.
+  p.resize(others.size() * (others.size() + 1) / 2, 1.0);
   const std::vector<double> adjusted = holmAdjusted(p);
-  for (std::size_t i = 0; i < adjusted.size(); ++i) {
+  for (std::size_t i = 0; i < others.size(); ++i) {
     if (adjusted[i] > kLargestP)
       ranking.not_apart.push_back(others[i]);
     else

@@ -106,11 +106,14 @@ void requireSameScenario(const std::string& name, const ScenarioConditions& a,
                      "; their figures do not compare. Run one of them again with the other's "
                      "protocol (`set: [protocol.KEY=VALUE]` of its matrix)");
   }
-  for (const auto& [input, hashes] : a.inputs) {
+  if (a.inputs.empty() || b.inputs.empty()) return;  // records of an earlier version
+  for (const std::string& input : kScenarioInputs) {
+    const auto mine = a.inputs.find(input);
     const auto other = b.inputs.find(input);
-    if (other == b.inputs.end() || other->second == hashes) continue;
+    const bool absent = mine == a.inputs.end();
+    if (absent == (other == b.inputs.end()) && (absent || mine->second == other->second)) continue;
     throw InputError(sets + " have a scenario '" + name + "' each, but its " + input +
-                     " is another file in A than in B (SHA-256 of the records); their figures do "
+                     " is not the same file in A and in B (SHA-256 of the records); their figures do "
                      "not compare. Run one of them again with the other's files");
   }
 }
@@ -123,7 +126,8 @@ BatchConditions readConditions(const fs::path& results, const std::vector<RunRec
   const fs::path file = results / "matrix.yaml";
   core::loadOptions({file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)},
                     matrix);
-  conditions.suite = fs::path(matrix.suite).filename().string();
+  const fs::path suite = fs::path(matrix.suite).lexically_normal();
+  conditions.suite = (suite.has_filename() ? suite : suite.parent_path()).filename().string();
   std::map<std::string, RunScenario> known;  // repetitions have the same scenario text
   for (const RunRecord& record : records) {
     if (!record.complete()) continue;

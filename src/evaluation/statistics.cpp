@@ -44,14 +44,16 @@ Statistics meanOverSeeds(const ValuesBySeed& values) {
   return statisticsOf(means);
 }
 
-/// Mean over seeds, and its interval.
+/// Mean over seeds, or the share of all samples together, and its interval.
 Statistics cellStatistics(const std::string& name, const ValuesBySeed& values,
                           const Records& records, RouteBootstrap& bootstrap) {
   Statistics statistics = meanOverSeeds(values);
   const metrics::PoolingRule rule = poolingOfMeasure(name);
   const bool count = rule.kind == metrics::Pooling::kCount || rule.kind == metrics::Pooling::kRate;
-  if (count || std::isfinite(rule.most))
-    statistics.interval = pooledEstimate(records, name, bootstrap, "seed").interval;
+  if (!count && !std::isfinite(rule.most)) return statistics;
+  const PooledEstimate pooled = pooledEstimate(records, name, bootstrap, "seed");
+  statistics.interval = pooled.interval;
+  if (rule.kind == metrics::Pooling::kShare && pooled.value) statistics.mean = *pooled.value;
   return statistics;
 }
 

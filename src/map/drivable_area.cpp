@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <set>
 
@@ -190,6 +191,13 @@ SignedDistance DrivableArea::signedDistanceWithGradient(const Eigen::Vector2d& p
 
 double DrivableArea::signedDistance(const Eigen::Vector2d& position, double elevation) const {
   return signedDistanceWithGradient(position, elevation).distance;
+}
+
+double DrivableArea::signedDistance(const geometry::OrientedBox& box, double elevation) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& corner : box.corners())
+    least = std::min(least, signedDistance(corner, elevation));
+  return least;
 }
 
 bool DrivableArea::contains(const Eigen::Vector2d& position, double elevation) const {

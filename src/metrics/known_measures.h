@@ -49,6 +49,7 @@ extern const MeasureDefinition kSpeedWasserstein;
 extern const MeasureDefinition kStopSigns;
 extern const MeasureDefinition kTtcCbvMean;
 extern const MeasureDefinition kTtcCbvMinimum;
+extern const MeasureDefinition kTtcDefined;
 extern const MeasureDefinition kTtcMean;
 extern const MeasureDefinition kTtcMinimum;
 

@@ -200,6 +200,8 @@ const char* weightText(SessionWeight weight) {
       return "over selected CBVs";
     case SessionWeight::kSeconds:
       return "over simulated time";
+    case SessionWeight::kTtcSeconds:
+      return "over the time with a 2D-TTC";
     case SessionWeight::kByKind:
     case SessionWeight::kOne:
       break;

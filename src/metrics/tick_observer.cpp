@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "metrics/formulas/ttc_2d.h"
 
@@ -67,10 +66,7 @@ bool TickObserver::offRoad(const Vehicle& vehicle) const {
 std::optional<double> TickObserver::edgeDistance(const Vehicle& vehicle) const {
   const auto& state = vehicle.state;
   if (!state.position.allFinite() || !std::isfinite(state.heading)) return std::nullopt;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& corner : vehicle.box().corners())
-    least = std::min(least, drivable_area_.signedDistance(corner, state.elevation));
-  return least;
+  return drivable_area_.signedDistance(vehicle.box(), state.elevation);
 }
 
 double TickObserver::wantedSpeed(const Vehicle& vehicle) const {

@@ -12,7 +12,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-/// Definition of a share of the decisions [%].
+/// Definition of a share of the decisions at which the ego has a 2D-TTC [%].
 constexpr MeasureDefinition shareMeasure(const char* name, const char* label,
                                          const char* definition) {
   return {name,
@@ -23,7 +23,9 @@ constexpr MeasureDefinition shareMeasure(const char* name, const char* label,
           Subject::kEgoAndOthers,
           definition,
           "RIFT takes all vehicles.",
-          1};
+          1,
+          false,
+          {Pooling::kShare, SessionWeight::kTtcSeconds}};
 }
 /// Definition of a mean 2D-TTC over such decisions [s].
 constexpr MeasureDefinition meanMeasure(const char* name, const char* label,

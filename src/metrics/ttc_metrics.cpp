@@ -22,6 +22,7 @@ const MeasureDefinition known::kTtcMean = {
     3,
     true,
 };
+
 const MeasureDefinition known::kTtcMinimum = {
     "ttc_min_s",
     "/metrics/ttc_2d_s/min",
@@ -35,6 +36,17 @@ const MeasureDefinition known::kTtcMinimum = {
     true,
 };
 
+const MeasureDefinition known::kTtcDefined = {
+    "ttc_defined_percent",
+    "/metrics/ttc_2d_defined_percent/value",
+    "2D-TTC is defined",
+    "%",
+    Direction::kNeither,
+    Subject::kEgoAndOthers,
+    "Share of decision ticks with an ego at which its 2D time to collision is defined.",
+    "",
+};
+
 namespace {
 
 constexpr MeasureDefinition kTtcDeviation = {
@@ -46,16 +58,6 @@ constexpr MeasureDefinition kTtcDeviation = {
     Subject::kEgoAndOthers,
     "Standard deviation (n - 1) of the same values.",
     "RIFT prints the variance of its bins as if it were the deviation.",
-};
-constexpr MeasureDefinition kTtcDefined = {
-    "ttc_defined_percent",
-    "/metrics/ttc_2d_defined_percent/value",
-    "2D-TTC is defined",
-    "%",
-    Direction::kNeither,
-    Subject::kEgoAndOthers,
-    "Share of decision ticks with an ego at which its 2D time to collision is defined.",
-    "",
 };
 
 class Ttc2d final : public Metric {
@@ -72,7 +74,7 @@ class Ttc2d final : public Metric {
     sink.set(known::kTtcMean, times.mean);
     sink.set(kTtcDeviation, times.standard_deviation);
     sink.set(known::kTtcMinimum, times.minimum);
-    sink.set(kTtcDefined, defined_.measure(kNoEgo));
+    sink.set(known::kTtcDefined, defined_.measure(kNoEgo));
   }
 
  private:
@@ -85,7 +87,7 @@ class Ttc2d final : public Metric {
 MetricDescriptor ttc2dMetric() {
   return {"ttc_2d",
           "2D time to collision of the ego with any vehicle (paper's 2D-TTC).",
-          {known::kTtcMean, kTtcDeviation, known::kTtcMinimum, kTtcDefined},
+          {known::kTtcMean, kTtcDeviation, known::kTtcMinimum, known::kTtcDefined},
           [](const MetricContext&) { return std::make_unique<Ttc2d>(); }};
 }
 

@@ -182,11 +182,7 @@ void ChallengeCourse::findRoad(ChallengeTrial& trial, std::size_t states) const 
     const traffic::VehicleState& state = motion.states[i];
     const geometry::OrientedBox box{state.position, state.heading, motion.dimensions.length,
                                     motion.dimensions.width};
-    const auto corners = box.corners();
-    const bool on_road = std::all_of(corners.begin(), corners.end(), [&](const auto& corner) {
-      return context_.drivable_area.contains(corner, state.elevation);
-    });
-    if (!on_road) ++trial.off_road;
+    if (context_.drivable_area.signedDistance(box, state.elevation) < 0.0) ++trial.off_road;
   }
 }
 

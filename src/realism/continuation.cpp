@@ -84,10 +84,8 @@ session::LoopParts makeParts(const session::SessionSetup& setup, const HandOverD
   parts.cbv_planner = {makeDriver(setup, driver), planners::seesImages(driver.planner)};
   if (parts.ego_planner.sees || parts.cbv_planner.sees)
     parts.cameras.emplace(setup, rigsOf(options, driver));
-  auto own = std::make_unique<HandOverSelector>(
-      std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
-                                         setup.graph(), setup.egoRoute()),
-      !driver.planner.empty());
+  auto own =
+      std::make_unique<HandOverSelector>(setup.makeCbvSelector(), !driver.planner.empty());
   selector = own.get();
   parts.selector = std::move(own);
   return parts;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/text.h"
@@ -146,12 +145,7 @@ const traffic::Vehicle* CourseRecorder::find(const traffic::TrafficSnapshot& sna
 }
 
 double CourseRecorder::edgeDistance(const traffic::Vehicle& vehicle) const {
-  double farthest = -std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& corner : vehicle.box().corners()) {
-    const double inside = setup_.drivableArea().signedDistance(corner, vehicle.state.elevation);
-    farthest = std::max(farthest, -inside);
-  }
-  return farthest;
+  return -setup_.drivableArea().signedDistance(vehicle.box(), vehicle.state.elevation);
 }
 
 void CourseRecorder::note(const traffic::TrafficSnapshot& snapshot, Object& object) const {

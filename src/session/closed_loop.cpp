@@ -107,9 +107,7 @@ LoopParts makeParts(const SessionSetup& setup) {
   parts.ego_planner = {setup.makeEgoPlanner(), planners::seesImages(options.ego_planner)};
   parts.cbv_planner = {setup.makeCbvPlanner(), planners::seesImages(options.cbv_planner)};
   if (parts.ego_planner.sees || parts.cbv_planner.sees) parts.cameras.emplace(setup);
-  parts.selector =
-      std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
-                                         setup.graph(), setup.egoRoute(), options.mode);
+  parts.selector = setup.makeCbvSelector();
   return parts;
 }
 

@@ -49,9 +49,7 @@ void checkStatuses(const std::vector<std::string>& statuses) {
 /// SUMO reads "nan" and "inf" as numbers and breaks down over them when the session runs.
 void requireFinite(const pugi::xml_node& element, const std::string& file) {
   for (const pugi::xml_attribute& attribute : element.attributes()) {
-    std::string value = attribute.value();
-    std::transform(value.begin(), value.end(), value.begin(),
-                   [](unsigned char letter) { return std::tolower(letter); });
+    std::string value = core::lowerCase(attribute.value());
     if (!value.empty() && (value.front() == '-' || value.front() == '+')) value.erase(0, 1);
     if (value != "nan" && value != "inf" && value != "infinity") continue;
     throw InputError("demand file '" + file + "': <" + element.name() + " id=\"" +

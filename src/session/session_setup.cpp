@@ -89,6 +89,11 @@ std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner(const std::strin
              options_.guidance, "guidance.", options_.cbv_rig, "cbv_rig"});
 }
 
+std::unique_ptr<cbv::CbvSelector> SessionSetup::makeCbvSelector() const {
+  return std::make_unique<cbv::CbvSelector>(options_.cbv, static_cast<int>(options_.max_cbv),
+                                            graph(), ego_route_, options_.mode);
+}
+
 std::unique_ptr<simulation::TrafficSimulator> SessionSetup::makeSimulator() const {
   simulation::SumoSession session;
   session.network_file = import_.file;

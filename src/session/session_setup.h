@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cbv/cbv_selector.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/planning/planner_descriptor.h"
 #include "map/import/network_import.h"
@@ -46,6 +47,8 @@ class SessionSetup {
   }
   /// One of another name in its place.
   std::unique_ptr<planning::Planner> makeCbvPlanner(const std::string& name) const;
+  /// What chooses the CBVs, by the scenario's mode.
+  std::unique_ptr<cbv::CbvSelector> makeCbvSelector() const;
   /// SUMO with the network, the demand file, the lights and the storyboard of the scenario. Throws
   /// InputError and SimulatorError as it does.
   std::unique_ptr<simulation::TrafficSimulator> makeSimulator() const;

@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "session/storyboard_scenario.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -23,16 +21,10 @@ using core::InputError;
 using storyboard::Entity;
 using storyboard::Scenario;
 
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return std::tolower(letter); });
-  return text;
-}
-
 const Entity& egoOf(const Scenario& scenario) {
   const Entity* external = nullptr;
   for (const Entity& entity : scenario.entities) {
-    if (lowerCase(entity.controller).find("external") == std::string::npos) continue;
+    if (core::lowerCase(entity.controller).find("external") == std::string::npos) continue;
     if (external != nullptr) {
       throw InputError(entity.source.text() + ": '" + external->name + "' and '" + entity.name +
                        "' have external controllers; expected one ego");
@@ -41,7 +33,7 @@ const Entity& egoOf(const Scenario& scenario) {
   }
   if (external != nullptr) return *external;
   for (const Entity& entity : scenario.entities) {
-    const std::string name = lowerCase(entity.name);
+    const std::string name = core::lowerCase(entity.name);
     if (name == "ego" || name == "hero") return entity;
   }
   throw InputError(scenario.entities.front().source.text() +
@@ -84,7 +76,7 @@ void requirePlaces(const Scenario& scenario, const Entity& ego) {
 
 /// The planner that a controller's name stands for, in a role; empty where there is none.
 std::string plannerOf(const Entity& entity, planners::Role role) {
-  const std::string name = lowerCase(entity.controller);
+  const std::string name = core::lowerCase(entity.controller);
   const planning::PlannerDescriptor* const descriptor = planners::findPlanner(name);
   if (descriptor == nullptr) return {};
   try {
@@ -154,7 +146,7 @@ void addCriterion(const storyboard::Condition& condition, VerdictOptions& verdic
   const auto* const parameter = std::get_if<storyboard::ParameterCondition>(&condition.what);
   if (parameter == nullptr) return;
   for (const Criterion& criterion : kCriteria) {
-    if (lowerCase(condition.name) != criterion.name && lowerCase(parameter->name) != criterion.name)
+    if (core::lowerCase(condition.name) != criterion.name && core::lowerCase(parameter->name) != criterion.name)
       continue;
     const auto limit = criterion.given ? core::parseNumber(parameter->value) : 0.0;
     if (!limit || *limit < 0.0) {

@@ -26,13 +26,6 @@ bool startsWithAnyOf(std::string_view text, std::initializer_list<std::string_vi
   });
 }
 
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char letter) { return std::tolower(letter); });
-  return lower;
-}
-
 /// The words of a name of SUMO's, in lower case: "device.ssm.edgeFile" has device, ssm, edge, file.
 std::vector<std::string> wordsOf(std::string_view name) {
   std::string spaced;
@@ -43,7 +36,7 @@ std::vector<std::string> wordsOf(std::string_view name) {
     upper = std::isupper(byte) != 0;
     spaced += std::isalnum(byte) != 0 ? letter : ' ';
   }
-  return core::splitText(lowerCase(spaced), ' ');
+  return core::splitText(core::lowerCase(spaced), ' ');
 }
 
 /// Whether a key of SUMO's, or one of a later version, may name a file.
@@ -218,7 +211,7 @@ class SumoInput : private pugi::xml_tree_walker {
 
   /// SUMO decodes as the declaration says; in others than these a letter may stand for a bracket.
   void checkEncoding(const pugi::xml_node& node) const {
-    const std::string encoding = lowerCase(node.attribute("encoding").value());
+    const std::string encoding = core::lowerCase(node.attribute("encoding").value());
     const bool plain = isAnyOf(encoding, {"", "utf-8", "utf8", "ascii", "us-ascii", "latin1"}) ||
                        startsWithAnyOf(encoding, {"iso-8859-", "windows-125"});
     if (plain) return;

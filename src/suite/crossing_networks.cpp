@@ -97,8 +97,9 @@ class District {
   void addCrossing(int row, int column) {
     constexpr double kSpacing = 110.0;  // [m]
     constexpr double kShift = 14.0;     // [m]
-    const Eigen::Vector3d place(column * kSpacing + draws_.uniform(-kShift, kShift),
-                                row * kSpacing + draws_.uniform(-kShift, kShift), 0.0);
+    const double shift_y = draws_.uniform(-kShift, kShift);
+    const double shift_x = draws_.uniform(-kShift, kShift);
+    const Eigen::Vector3d place(column * kSpacing + shift_x, row * kSpacing + shift_y, 0.0);
     const std::array<const char*, 3> types = {"priority", "traffic_light", "right_before_left"};
     const int type = row == main_row_ ? draws_.whole(0, 1) : draws_.whole(0, 2);
     plan_.nodes.push_back({crossing(row, column), place, types[static_cast<std::size_t>(type)]});
@@ -116,8 +117,9 @@ class District {
   std::string addEnd(const std::string& name, int row, int column, double heading) {
     const Eigen::Vector3d from =
         plan_.nodes[static_cast<std::size_t>(row * columns_ + column)].position;
+    const double turn = draws_.uniform(-0.25, 0.25);
     const Eigen::Vector2d offset =
-        draws_.uniform(95.0, 130.0) * geometry::direction(heading + draws_.uniform(-0.25, 0.25));
+        draws_.uniform(95.0, 130.0) * geometry::direction(heading + turn);
     const double height = spec_.elevation ? draws_.uniform(-3.0, 3.0) : 0.0;
     plan_.nodes.push_back({name, {from.x() + offset.x(), from.y() + offset.y(), height}, ""});
     return name;

@@ -55,7 +55,8 @@ class Carriageway {
     const double heading = std::atan2(along.y(), along.x());
     const Line start = beside(beginning, -(lanes_ + 0.5) * kLaneWidth);
     RoadLine ramp(start.front().head<2>(), heading + core::kPi);
-    ramp.straight(8.0).arc(draws.uniform(40.0, 90.0), draws.uniform(20.0, 45.0) * core::kDegree);
+    const double angle = draws.uniform(20.0, 45.0) * core::kDegree;
+    ramp.straight(8.0).arc(draws.uniform(40.0, 90.0), angle);
     ramp.straight(draws.uniform(60.0, 90.0));
     const Line line = reversed(climbing(ramp.points(), 10.0, elevation));
     const double speed = draws.pick(std::vector<double>{11.11, 13.89});
@@ -90,7 +91,9 @@ RoadPlan drawMerge(const NetworkSpec& spec, Draws& draws) {
   const double added = draws.uniform(60.0, 110.0);
   RoadLine middle({0.0, 0.0}, draws.uniform(0.0, 2.0 * core::kPi));
   middle.straight(kBefore + added + 10.0);
-  middle.arc(draws.uniform(150.0, 400.0), draws.sign() * draws.uniform(5.0, 18.0) * core::kDegree);
+  const double side = draws.sign();
+  const double angle = side * draws.uniform(5.0, 18.0) * core::kDegree;
+  middle.arc(draws.uniform(150.0, 400.0), angle);
   middle.straight(kAfter - 10.0);
   const double length = lengthOf(middle.points());
   const double speed = drawLargeSpeed(draws);

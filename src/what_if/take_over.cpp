@@ -98,12 +98,6 @@ void runFollowed(const RecordedRun& run, const session::SessionSetup& setup,
   loop.run(follower.stop());
 }
 
-std::unique_ptr<cbv::VehicleSelector> makeSelector(const session::SessionSetup& setup) {
-  const session::ScenarioOptions& options = setup.options();
-  return std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
-                                            setup.graph(), setup.egoRoute(), options.mode);
-}
-
 }  // namespace
 
 RecordedCourse repeatRecorded(const RecordedRun& run, const session::SessionSetup& setup,
@@ -113,7 +107,7 @@ RecordedCourse repeatRecorded(const RecordedRun& run, const session::SessionSetu
   all.tick = all.end_tick;  // nobody takes over, no contact ends it
   CourseFollower follower(setup, all, RecordedPart{run, all.end_tick});
   session::LoopParts parts;
-  parts.selector = makeSelector(setup);
+  parts.selector = setup.makeCbvSelector();
   parts.ego_planner = {std::make_unique<RecordedActions>(run), false};
   parts.cbv_planner = {std::make_unique<RecordedActions>(run), false};
   runFollowed(run, setup, std::move(parts), follower);
@@ -124,7 +118,7 @@ Course driveClosed(const RecordedRun& run, const Driver& driver, const session::
                    const TakeOver& take_over) {
   CourseFollower follower(setup, take_over, RecordedPart{run, take_over.tick});
   session::LoopParts parts;
-  parts.selector = makeSelector(setup);
+  parts.selector = setup.makeCbvSelector();
   parts.ego_planner = {std::make_unique<TakenOverEgo>(run, driver.make(), take_over.tick),
                        driver.sees()};
   parts.cbv_planner = {setup.makeCbvPlanner(), planners::seesImages(setup.options().cbv_planner)};

@@ -227,7 +227,8 @@ TEST_F(ForeignFiles, ABatchLeavesThemAlone) {
   expectUntouched("a refused batch");
   EXPECT_LE(cdiff(batch() + Words{"--overwrite"}), kVerdict) << output();
   expectUntouched("an overwritten batch");
-  kill(batch() + Words{"--overwrite"}, results() / "matrix.yaml");
+  ASSERT_FALSE(fs::exists(results() / "plan.json"));  // there while a batch runs
+  kill(batch() + Words{"--overwrite"}, results() / "plan.json");
   expectUntouched("a killed batch");
   EXPECT_LE(cdiff(batch() + Words{"--resume"}), kVerdict) << output();
   expectUntouched("the batch after it");

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/evaluate_command.h"
-#include "cli/processes.h"
+#include "support/processes.h"
 #include "core/output_folder.h"
 #include "core/text.h"
 
@@ -148,7 +148,10 @@ TEST_F(ResultFolder, WhatAKilledSessionLeavesEndsWithItOrIsRemovedByTheNext) {
   words.push_back("--video");
   {
     test::ProgramRun process(CDIFF_PROGRAM, words, scratch_.path() / "output");
-    ASSERT_TRUE(waitUntil([&] { return holds("ffmpeg_process") && holds("trace.csv.part"); }));
+    ASSERT_TRUE(waitUntil([&] {
+      const fs::path file = folder("ffmpeg_process");
+      return fs::exists(file) && fs::file_size(file) > 1 && holds("trace.csv.part");
+    }));
     process.signal(SIGKILL);
     EXPECT_EQ(process.wait(), 128 + SIGKILL);
   }

@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/fork_server.h"
 #include "core/process_pool.h"
+#include "support/processes.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::core {
@@ -136,14 +137,9 @@ TEST_F(ForkServerTest, TakesItsJobAlongWhenTheClientEnds) {
       if (!text.empty()) job = std::stoi(text);
     }
   }
-  const std::string state = "/proc/" + std::to_string(job) + "/stat";
-  const auto alive = [&] {
-    return std::filesystem::exists(state) &&
-           readFile(state, "state").find(") Z ") == std::string::npos;
-  };
-  for (int i = 0; i < 500 && alive(); ++i)
+  for (int i = 0; i < 500 && test::isAlive(job); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_FALSE(alive());
+  EXPECT_FALSE(test::isAlive(job));
 }
 
 }  // namespace

@@ -77,6 +77,11 @@ TEST(Text, TheTimeIsLocalForPeopleAndForFileNames) {
   ::tzset();
 }
 
+TEST(Text, LowerCaseIsThatOfAscii) {
+  EXPECT_EQ(lowerCase("NaN_1-Z"), "nan_1-z");
+  EXPECT_EQ(lowerCase("\xC3\x84@["), "\xC3\x84@[");
+}
+
 TEST(Text, FileNamesStayInTheirFolder) {
   EXPECT_EQ(fileName("../../evil one"), "_.._evil_one");
   EXPECT_EQ(fileName("..."), "unnamed");
@@ -226,8 +231,8 @@ TEST(File, Sha256OfKnownText) {
 }
 
 TEST(File, AtomicWriteReplacesWholeFile) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("cdiff_file_" + std::to_string(std::rand()));
+  const test::TemporaryFolder scratch;
+  const std::filesystem::path folder = scratch.path() / "files";
   std::filesystem::create_directories(folder);
   writeFileAtomically(folder / "a.txt", "one");
   writeFileAtomically(folder / "a.txt", "two");
@@ -238,18 +243,16 @@ TEST(File, AtomicWriteReplacesWholeFile) {
   EXPECT_THROW(readFile(folder, "text"), InputError);
   EXPECT_THROW(readFile(folder / "none", "text"), InputError);
   EXPECT_THROW(writeFileAtomically(folder / "none" / "a", "x"), InputError);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(File, AtomicWriteThatFailsLeavesNothingBehind) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("cdiff_file_" + std::to_string(std::rand()));
+  const test::TemporaryFolder scratch;
+  const std::filesystem::path folder = scratch.path() / "files";
   std::filesystem::create_directories(folder / "a.txt" / "inside");  // a folder cannot be replaced
   EXPECT_THROW(writeFileAtomically(folder / "a.txt", "one"), InputError);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder),
                           std::filesystem::directory_iterator()),
             1);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(File, AnOutputIsWrittenThroughDevicesAndPipesAndReplacesNone) {

@@ -39,7 +39,11 @@ class RouteScale : public testing::Test {
   Results alone(bool with_route) const {
     std::vector<Context> contexts = contexts_;
     if (!with_route) {
-      for (Context& context : contexts) context.route.clear();
+      for (Context& context : contexts) {  // with a route alone: as in training
+        context.route.clear();
+        context.previous.clear();
+        context.target_speed.reset();
+      }
     }
     CpuDenoiser denoiser(model_);
     denoiser.setContexts(contexts);
@@ -82,6 +86,19 @@ TEST_F(RouteScale, MixesBothPredictionsAndTheirGradients) {
     EXPECT_EQ(found.states, without.states);  // states of given actions know no route
   }
   EXPECT_EQ(mixed(0.0).actions, without.actions);
+}
+
+/// Training never shows the image before, or a target speed, without a route.
+TEST_F(RouteScale, WithoutItsRouteASampleHasNoMotionEither) {
+  model_ = randomModel(Architecture().withMotion());
+  contexts_.clear();
+  for (std::uint32_t b = 0; b < kSamples; ++b) {
+    contexts_.push_back(randomContext(model_.architecture, b, true));
+    contexts_.back().previous = randomValues(model_.architecture.image_features, b + 3000);
+    contexts_.back().target_speed = 7.0 + b;
+  }
+  ASSERT_NE(alone(true).actions, alone(false).actions);
+  EXPECT_EQ(mixed(0.0).actions, alone(false).actions);
 }
 
 }  // namespace

@@ -132,6 +132,16 @@ TEST(PooledEstimate, OfAShareOfCbvsPoolsCbvs) {
     EXPECT_EQ(poolingOfMeasure(name).weight, metrics::SessionWeight::kCbvSelections) << name;
 }
 
+TEST(PooledEstimate, OfASharePartingTheTimesToCollisionWeighsTheTimeThatHasOne) {
+  std::vector<RunRecord> records = {
+      runOf("a", "1", {{"ttc_following_percent", 100}, {"ttc_defined_percent", 10}}),
+      runOf("b", "1", {{"ttc_following_percent", 20}, {"ttc_defined_percent", 30}})};
+  for (RunRecord& record : records) record.simulated_seconds = 60.0;
+  EXPECT_DOUBLE_EQ(*estimateOf(records, "ttc_following_percent").value, 40.0);
+  records[0].measures.erase("ttc_defined_percent");
+  EXPECT_DOUBLE_EQ(*estimateOf(records, "ttc_following_percent").value, 20.0);
+}
+
 TEST(PooledEstimate, OfAShareAtItsBoundIsNoPoint) {
   // 4 routes at 0 %: at most 1 - 0.025^(1/4) = 60.2 % of routes may differ, by up to 100 %.
   std::vector<RunRecord> records;

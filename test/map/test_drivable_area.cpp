@@ -122,6 +122,8 @@ TEST(DrivableArea, StraightRoad) {
   EXPECT_NEAR(area.signedDistance({1100.0, 0.0}), -1000.0, kGrid);  // beyond the indexed ground
   EXPECT_TRUE(area.contains({50.0, 1.9}));
   EXPECT_FALSE(area.contains({50.0, 2.1}));
+  EXPECT_NEAR(area.signedDistance(geometry::OrientedBox{{50.0, 0.5}, 0.0, 4.0, 2.0}), 0.5, kGrid);
+  EXPECT_NEAR(area.signedDistance(geometry::OrientedBox{{98.0, -1.5}, 0.0, 4.0, 2.0}), -0.5, kGrid);
   const SignedDistance above = area.signedDistanceWithGradient({50.0, 3.0});
   EXPECT_NEAR(above.gradient.x(), 0.0, 1e-9);
   EXPECT_NEAR(above.gradient.y(), -1.0, 1e-9);

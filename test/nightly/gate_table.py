@@ -13,13 +13,17 @@ def row(verdict, stamp):
     return [str(verdict.tried), str(held) if held == verdict.tried else f"**{held}**", *stamp, f"{verdict.seconds / 60:.1f}"]
 
 
-def write(document, gates, verdicts):
+def stamp_of(source):
+    """Date, revision and machine, to be taken before the gates are tried."""
+    return [datetime.date.today().isoformat(), revision(source), machine()]
+
+
+def write(document, gates, verdicts, stamp):
     """Writes rows of `verdicts`; those of other gates stay as they are."""
     before, _, rest = document.read_text().partition(BEGIN)
     table, _, after = rest.partition(END)
     kept = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines() if line.startswith("| `")]
     rows = {cells[0].strip("`"): cells[2:] for cells in kept}
-    stamp = [datetime.date.today().isoformat(), revision(document.resolve().parent), machine()]
     rows.update({verdict.gate.name: row(verdict, stamp) for verdict in verdicts})
     lines = HEAD + [f"| `{name}` | {gate.holds} | " + " | ".join(rows.get(name, NEVER)) + " |" for name, gate in gates.items()]
     document.write_text(before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + after)

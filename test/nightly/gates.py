@@ -49,8 +49,9 @@ def main():
         sys.exit(f"no gate '{unknown[0]}'; there are: {' '.join(gates)}")
     folder = given.build / "gates"
     folder.mkdir(parents=True, exist_ok=True)
+    stamp = gate_table.stamp_of(given.source)
     verdicts = [gate.run(gates[name], given.seed, given.share, folder / f"{name}.json") for name in given.gates or gates]
-    gate_table.write(given.source / "docs" / "reliability.md", gates, verdicts)
+    gate_table.write(given.source / "docs" / "reliability.md", gates, verdicts, stamp)
     junit.write(given.result, "gates", [(v.gate.name, v.seconds, f"{len(v.failures)} of {v.tried}" if v.failures else None) for v in verdicts])
     return any(verdict.failures for verdict in verdicts)
 

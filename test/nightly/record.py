@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Write what `scripts/test --nightly` ran last into the table of a document, one row a check.
 
-    record.py BUILD DOCUMENT
+    record.py --stamp SOURCE                before the checks: prints date, revision and machine
+    record.py BUILD DOCUMENT STAMP
 
 A row of a check that did not run this time stays as it is, with its own date; one that never ran says so. The tests
 without the label are one row, `every other test`. The gates have a table of their own and no row.
@@ -58,9 +59,15 @@ def cases(build, name):
     return len(found) - failed - skipped, failed, skipped
 
 
+def was_skipped(run):
+    """Whether a program said that it cannot run here; one that ctest could not start has failed."""
+    skipped = run.find("skipped")
+    return skipped is not None and "SKIP_RETURN_CODE" in skipped.get("message", "")
+
+
 def outcome(build, name, run):
     """The text of a row's result."""
-    if run.find("skipped") is not None:
+    if was_skipped(run):
         return "left out: a program or input that it needs is missing"
     passed = run.find("failure") is None and run.get("status") == "run"
     counts = cases(build, name)
@@ -76,9 +83,11 @@ def rows_of(build, nightly, others, stamp):
     rows = {}
     ran = [run for run in runs if run.get("name") in others]
     if len(ran) == len(others):
-        bad = sum(run.find("failure") is not None for run in ran)
+        skipped = sum(was_skipped(run) for run in ran)
+        passed = sum(run.get("status") == "run" and run.find("failure") is None for run in ran) - skipped
         seconds = sum(float(run.get("time")) for run in ran)
-        rows[OTHERS] = [*stamp, f"{len(ran) - bad} programs passed, {bad} failed", f"{seconds / 60:.1f}"]
+        text = f"{passed} programs passed, {len(ran) - passed - skipped} failed" + (f", {skipped} skipped" if skipped else "")
+        rows[OTHERS] = [*stamp, text, f"{seconds / 60:.1f}"]
     for run in runs:
         if run.get("name") in nightly:
             rows[run.get("name")] = [*stamp, outcome(build, run.get("name"), run), f"{float(run.get('time')) / 60:.1f}"]
@@ -92,12 +101,14 @@ def kept_rows(table):
 
 
 def main():
-    build, document = sys.argv[1], Path(sys.argv[2])
+    if sys.argv[1] == "--stamp":
+        print(json.dumps([datetime.date.today().isoformat(), revision(sys.argv[2]), machine()]))
+        return
+    build, document, stamp = sys.argv[1], Path(sys.argv[2]), json.loads(sys.argv[3])
     text = document.read_text()
     before, _, rest = text.partition(BEGIN)
     table, _, after = rest.partition(END)
     nightly, others = known_tests(build)
-    stamp = [datetime.date.today().isoformat(), revision(document.resolve().parent), machine()]
     rows = {**kept_rows(table), **rows_of(build, nightly, others, stamp)}
     lines = HEAD + ["| " + " | ".join([check if check == OTHERS else f"`{check}`", *rows.get(check, [NEVER, "", "", "", ""])]) + " |"
                     for check in [OTHERS, *nightly] if check not in ELSEWHERE]

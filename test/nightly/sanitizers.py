@@ -25,10 +25,13 @@ LAYERS = ["core", "geometry", "map", "traffic", "dynamics", "cbv", "metrics", "r
 # Nothing of memory or threads is in these that the others do not run too, and with a sanitizer they take many minutes.
 SLOW = {"test_suite_suite_generator", "test_suite_shipped_suite", "test_diffusion_planner_guided_plans", "test_diffusion_planner_modes",
         "test_planners_mirror_symmetry", "test_diffusion_safetensors_memory", "test_session_soak", "test_evaluation_driving_gate"}
-THREADED = ["test_evaluation_executor", "test_core_process_pool", "test_simulation_sumo_loss", "test_diffusion_image_encoder",
-            "test_video_session_video"]
+THREADED = ["test_core_fork_server", "test_core_forked_work", "test_core_lease", "test_core_process_pool", "test_core_stage_times",
+            "test_map_drivable_area", "test_diffusion_image_encoder", "test_diffusion_planner_guided_plans",
+            "test_evaluation_executor", "test_evaluation_worker", "test_session_decision_cycle",
+            "test_session_observer_thread", "test_session_session_control", "test_simulation_sumo_loss",
+            "test_video_session_video", "test_watch_live_session"]
 OPTIONS = {"ASAN_OPTIONS": "detect_leaks=1:abort_on_error=0", "UBSAN_OPTIONS": "print_stacktrace=1",
-           "LSAN_OPTIONS": "print_suppressions=0", "TSAN_OPTIONS": "halt_on_error=0:exitcode=66:second_deadlock_stack=1"}
+           "LSAN_OPTIONS": "print_suppressions=0", "TSAN_OPTIONS": "halt_on_error=0:exitcode=66:second_deadlock_stack=1:die_after_fork=0"}
 # ThreadSanitizer: GDAL, which OpenCV's image codecs load, takes two locks of its own in either order at its start, in one thread.
 DEADLOCKS = "deadlock:libgdal.so\n"
 # LeakSanitizer: libtraci does not free a connection whose SUMO is lost; libsumo's readers of XML keep some texts.

@@ -39,7 +39,6 @@ using Clock = std::chrono::steady_clock;
 using carla_msgs::CarlaEgoVehicleControl;
 
 constexpr double kStep = 0.05;     // [s]
-constexpr double kPatience = 1.0;  // [s] of wall time
 constexpr double kPi = 3.14159265358979;
 constexpr std::uint32_t kFirstActor = 100;
 
@@ -264,8 +263,10 @@ void Bridge::publishFrame() {
   for (const auto& [role, publisher] : images_) publishImage(role);
 }
 
+/// Before the first commands somebody may still start; later only what hangs takes long.
 void Bridge::waitForCommands() {
-  while (ros::ok() && !received_ && secondsSince(published_) < kPatience)
+  const double patience = counts_.empty() ? 1.0 : 30.0;  // [s] of wall time
+  while (ros::ok() && !received_ && secondsSince(published_) < patience)
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
   if (!received_) ++timeouts_;
   if (awaited_.empty()) latencies_.push_back(1e3 * secondsSince(published_));

@@ -41,7 +41,7 @@ class Session : public ::testing::Test {
     const std::string command =
         find_port + "; export PATH=/usr/bin:$PATH ROS_IP=127.0.0.1 ROS_HOME=" + folder_.string() +
         "/home ROS_MASTER_URI=http://127.0.0.1:$port; " + (beside.empty() ? "exec " : "") +
-        "timeout -s INT 80 " E2E_CDIFF_DEVEL "/env.sh roslaunch -p $port " + file +
+        "timeout -s INT 300 " E2E_CDIFF_DEVEL "/env.sh roslaunch -p $port " + file +
         " results:=" + results().string() + " " + arguments + " > " + log().string() + " 2>&1" +
         (beside.empty() ? ""
                         : " & launch=$!; " E2E_CDIFF_DEVEL "/env.sh " + beside +

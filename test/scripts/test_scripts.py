@@ -4,6 +4,7 @@
     test_scripts.py BUILD SOURCE RESULT.xml
 """
 import gzip
+import io
 import json
 import os
 import re
@@ -120,10 +121,10 @@ esac
                 return subprocess.run([SOURCE / "scripts/openscenario_coverage", "--cdiff", root / "cdiff", *arguments], timeout=60,
                                       capture_output=True, text=True, check=False)
 
-            done = covered(root / "set", "--networks", root, "--limit", "1", "--files")
+            done = covered(root / "set", "--networks", root, "--limit", "5", "--files")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("| set | 4 | 1 | 1 | 1 | 1 |", done.stdout)
-            for line in ("1 x <TrailerAction>: this action is not supported", "1 x the attribute 's' is missing", "1 x no end within 1 s"):
+            for line in ("1 x <TrailerAction>: this action is not supported", "1 x the attribute 's' is missing", "1 x no end within 5 s"):
                 self.assertIn(line, done.stdout.splitlines())
             self.assertIn("completed, 1 collisions of the ego", done.stdout)
             self.assertIn("| set | 4 | 0 | 0 | 0 | 4 |", covered(root / "set").stdout)
@@ -482,20 +483,38 @@ esac
             (build / "Testing").mkdir()
             (build / "Testing" / "ctest.xml").write_text(
                 '<testsuite><testcase name="soak" time="90" status="run"/>'
-                '<testcase name="page" time="0" status="notrun"><skipped message=""/></testcase></testsuite>')
+                '<testcase name="page" time="0" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/></testcase>'
+                '<testcase name="new" time="0" status="notrun"><skipped message="Unable to find executable: /new"/></testcase></testsuite>')
             results = build / "test_results" / "e2e_cdiff"
             junit.write(results / "gtest-soak.xml", "soak", [("a", 1.0, None), ("b", 1.0, "broke")])
             document.write_text("Text.\n<!-- written by scripts/test --nightly: begin -->\n| Check | Last run |\n|---|---|\n"
                                 "| `mutants` | 2026-01-01 | abc | 2 cores | 54 passed, 0 failed | 12.0 |\n<!-- end -->\nMore.\n")
-            subprocess.run([SOURCE / "test" / "nightly" / "record.py", build, document], check=True,
+            subprocess.run([SOURCE / "test" / "nightly" / "record.py", build, document, json.dumps(["2026-02-02", "def", "1 core"])], check=True,
                            env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"})
             rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in document.read_text().splitlines() if "|" in line][2:]
             self.assertEqual([row[0] for row in rows], ["every other test", "`soak`", "`mutants`", "`new`", "`page`"])
-            self.assertEqual(rows[1][4:], ["1 passed, 1 failed", "1.5"])
+            self.assertEqual(rows[1][1:], ["2026-02-02", "def", "1 core", "1 passed, 1 failed", "1.5"])
+            self.assertEqual(rows[3][4], "failed")  # its program is missing
             self.assertIn("left out", rows[4][4])
             self.assertEqual(rows[2][1:], ["2026-01-01", "abc", "2 cores", "54 passed, 0 failed", "12.0"])
-            self.assertEqual([rows[0][1], rows[3][1]], ["not run yet", "not run yet"])  # "unit" was left out
+            self.assertEqual(rows[0][1], "not run yet")  # "unit" was left out
             self.assertTrue(document.read_text().startswith("Text.\n") and document.read_text().endswith("-->\nMore.\n"))
+
+    def test_a_test_that_is_skipped_is_no_passed_one(self):
+        class Some(unittest.TestCase):
+            def test_runs(self):
+                pass
+
+            @unittest.skip("not here")
+            def test_is_skipped(self):
+                pass
+
+        suite = unittest.defaultTestLoader.loadTestsFromTestCase(Some)
+        names = [test.id() for test in suite]
+        with tempfile.TemporaryDirectory() as folder:
+            junit.write_unittest(Path(folder) / "some.xml", "some", unittest.TextTestRunner(stream=io.StringIO()).run(suite), names)
+            counted = subprocess.run([SOURCE / "scripts" / "count_tests.py", folder], capture_output=True, text=True, check=False).stdout
+        self.assertEqual(counted.splitlines()[-1], "1 passed, 0 failed, 1 skipped")
 
 
 if __name__ == "__main__":

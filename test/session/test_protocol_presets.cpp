@@ -67,11 +67,7 @@ TEST(ProtocolPresets, UnknownOnesNameTheNearest) {
 class ProtocolOfAScenario : public testing::Test {
  protected:
   ProtocolOfAScenario() {
-    request_.scenario = (fs::temp_directory_path() / ("cdiff_protocol_" + testName() + ".yaml"));
-  }
-  ~ProtocolOfAScenario() override { fs::remove(request_.scenario); }
-  static std::string testName() {
-    return testing::UnitTest::GetInstance()->current_test_info()->name();
+    request_.scenario = (folder_.path() / "scenario.yaml").string();
   }
   ProtocolOptions resolved(const std::string& protocol) {
     std::ofstream(request_.scenario) << "network: roundabout\nroute: {edges: [a]}\n" << protocol;
@@ -85,6 +81,7 @@ class ProtocolOfAScenario : public testing::Test {
     }
     return "";
   }
+  test::TemporaryFolder folder_;
   SessionRequest request_;
 };
 

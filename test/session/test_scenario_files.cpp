@@ -268,14 +268,14 @@ TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {
 }
 
 TEST(SessionRequest, ScenarioFileErrorsNameFileAndLine) {
-  const fs::path file = fs::temp_directory_path() / "cdiff_broken_scenario.yaml";
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "broken.yaml";
   std::ofstream(file) << "network: roundabout\nroute:\n  edgess: [a]\n";
   SessionRequest request;
   request.scenario = file.string();
   const std::string error = errorOf(request);
   EXPECT_TRUE(mentions(error, file.string() + ":3")) << error;
   EXPECT_TRUE(mentions(error, "'edges'")) << error;
-  fs::remove(file);
 }
 
 }  // namespace

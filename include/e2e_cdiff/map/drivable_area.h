@@ -28,7 +28,9 @@ class DrivableArea {
 
   /// Exact distance to the border of the area on the level of `elevation` [m].
   double signedDistance(const Eigen::Vector2d& position, double elevation = 0.0) const;
-  /// The same with its gradient.
+  /// The smallest of a box's corners, all on the level of `elevation` [m].
+  double signedDistance(const geometry::OrientedBox& box, double elevation = 0.0) const;
+  /// That of a point, with its gradient.
   SignedDistance signedDistanceWithGradient(const Eigen::Vector2d& position,
                                             double elevation = 0.0) const;
   /// Whether a point lies on the area.

@@ -47,6 +47,7 @@ enum class SessionWeight {
   kCbvDecisions,   ///< decisions with a CBV
   kCbvSelections,  ///< vehicles selected as CBV; one selected twice counts twice
   kSeconds,        ///< simulated time
+  kTtcSeconds,     ///< simulated time in which the ego has a 2D time to collision
 };
 
 /// How a measure is summed up over sessions and between which values it lies, from which its

@@ -303,7 +303,9 @@ std::vector<Comparison> compareLevels(const RunSet& runs, const std::string& fac
 
 void checkMeasureNames(const std::vector<std::string>& names) {
   const auto& known = measureNames();
+  std::set<std::string> given;
   for (const std::string& name : names) {
+    if (!given.insert(name).second) throw InputError("--figure '" + name + "' is there twice");
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw InputError("--figure '" + name + "' is no measure" + nearest(name, known));
   }

@@ -28,9 +28,16 @@ std::string valueOf(const std::map<std::string, std::string>& values, const std:
   return found == values.end() ? "" : found->second;
 }
 
+/// The levels of a factor in a group of runs, which are averaged: "constant and pdm_lite".
+std::string levelsIn(const std::vector<const RunRecord*>& runs, const std::string& factor) {
+  std::set<std::string> levels;
+  for (const RunRecord* run : runs) levels.insert(run->factors.at(factor));
+  return core::joinText({levels.begin(), levels.end()}, " and ");
+}
+
 void noteFactors(const RunPair& pair, DifferencesByName& found) {
   for (const std::string& factor : factorNames())
-    note(factor, pair.a.front()->factors.at(factor), pair.b.front()->factors.at(factor), found);
+    note(factor, levelsIn(pair.a, factor), levelsIn(pair.b, factor), found);
 }
 
 /// Whether two values name files of one name: their contents are compared, not their folders.

@@ -45,6 +45,11 @@ std::optional<double> weightOf(const RunRecord& record, SessionWeight weight) {
     }
     case SessionWeight::kSeconds:
       return record.simulated_seconds;
+    case SessionWeight::kTtcSeconds: {
+      const auto percent = measureOf(record, known::kTtcDefined.name);
+      return percent ? std::optional<double>(record.simulated_seconds * *percent / 100.0)
+                     : std::nullopt;
+    }
     case SessionWeight::kByKind:
     case SessionWeight::kOne:
       break;

@@ -40,6 +40,19 @@ SearchScore scoreIn(const RunRecord& record, const fs::path& results) {
   return searchScoreOf(record, contactsIn(core::readFile(file, "summary"), file.string()));
 }
 
+/// Why the scenario does not take these values together; empty where it does.
+std::string refusalOf(const SearchRequest& request, const std::vector<std::string>& set) {
+  session::SessionRequest session = sessionRequestOf(request);
+  session.set.insert(session.set.end(), set.begin(), set.end());
+  session.set_source = request.options_source;
+  try {
+    session::resolveRequest(session);
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 bool haveEnded(const std::vector<RunRecord>& records) {
   return std::all_of(records.begin(), records.end(),
                      [](const RunRecord& record) { return record.complete() || record.failed(); });
@@ -75,9 +88,32 @@ bool Search::isThere(const std::vector<std::string>& set,
          std::any_of(others.begin(), others.end(), same);
 }
 
-/// A proposal that was there before is replaced by another one, as far as the space has any.
-std::vector<SearchCase> Search::proposed() const {
+/// A proposal that was there before is replaced by another one, as far as the space has any; so is
+/// one whose values the scenario refuses together. Throws InputError where it refuses all.
+void Search::propose(std::size_t number, const std::vector<RatedPoint>& rated,
+                     const std::vector<SearchCase>& others, SearchCase& next) const {
   constexpr std::size_t kMostAttempts = 50;
+  std::string refused;
+  for (std::size_t attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const SearchPoint point = proposal_.point(number, rated, attempt);
+    const std::vector<std::string> set = space_.assignments(point);
+    if (isThere(set, others) && !next.set.empty()) continue;
+    const std::string error = refusalOf(request_, set);
+    if (!error.empty()) {
+      refused = error;
+      continue;
+    }
+    next.point = point;
+    next.set = set;
+    if (!isThere(set, others)) return;
+  }
+  if (next.set.empty())
+    throw core::InputError(request_.options_source + ": the scenario refuses each of " +
+                           std::to_string(kMostAttempts) +
+                           " cases, though it takes the values one by one: " + refused);
+}
+
+std::vector<SearchCase> Search::proposed() const {
   std::vector<RatedPoint> rated;
   for (const SearchCase& earlier : cases_) rated.push_back({earlier.point, earlier.worth()});
   const std::size_t end =
@@ -86,11 +122,7 @@ std::vector<SearchCase> Search::proposed() const {
   for (std::size_t number = cases_.size(); number < end; ++number) {
     SearchCase next;
     next.id = caseId(number);
-    for (std::size_t attempt = 0; attempt < kMostAttempts; ++attempt) {
-      next.point = proposal_.point(number, rated, attempt);
-      next.set = space_.assignments(next.point);
-      if (!isThere(next.set, batch)) break;
-    }
+    propose(number, rated, batch, next);
     batch.push_back(next);
   }
   return batch;
@@ -128,7 +160,8 @@ bool Search::askCarefulDriver(std::vector<SearchCase>& batch, const fs::path& re
   auto record = records.begin();
   for (SearchCase& one : batch) {
     if (!one.score.isFound()) continue;
-    one.careful_survives = record->complete() && !scoreIn(*record, results).isFound();
+    one.careful_broke = record->failed();
+    if (!one.careful_broke) one.careful_survives = !scoreIn(*record, results).isFound();
     ++record;
   }
   return true;

@@ -40,9 +40,15 @@ struct SearchCase {
   /// nobody asked.
   std::optional<bool> careful_survives;
 
-  /// What the search maximizes: the score, or 0 where the careful driver was hit, too.
-  double worth() const { return careful_survives.value_or(true) ? score.value : 0.0; }
-  bool isFound() const { return score.isFound() && careful_survives.value_or(true); }
+  bool careful_broke = false;  ///< the careful driver was asked, and its session broke
+
+  /// What the search maximizes: the score, or 0 where the careful driver was hit, too, or gave no
+  /// answer.
+  double worth() const { return isConfirmed() ? score.value : 0.0; }
+  bool isFound() const { return score.isFound() && isConfirmed(); }
+
+ private:
+  bool isConfirmed() const { return careful_survives.value_or(true) && !careful_broke; }
 };
 
 /// Searches a scenario for the sessions that are worst for its ego. In mode challenging a contact
@@ -70,6 +76,8 @@ class Search {
 
  private:
   std::vector<SearchCase> proposed() const;
+  void propose(std::size_t number, const std::vector<RatedPoint>& rated,
+               const std::vector<SearchCase>& others, SearchCase& next) const;
   bool isThere(const std::vector<std::string>& set, const std::vector<SearchCase>& others) const;
   std::vector<PlannedRun> planned(const std::vector<SearchCase>& batch, bool careful) const;
   bool askCarefulDriver(std::vector<SearchCase>& batch, const std::filesystem::path& results,

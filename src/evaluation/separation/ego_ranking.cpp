@@ -38,6 +38,12 @@ double standingMinutes(std::string_view trace, double step) {
   return static_cast<double>(ticks) * step / 60.0;
 }
 
+/// Who takes over, and when: answers of different times are not one count.
+std::string driverIn(const json& answer) {
+  return answer.at("driver").get<std::string>() + ", " +
+         core::formatNumber(answer.at("before_s").get<double>()) + " s before";
+}
+
 /// Adds what `cdiff what_if` found about the contacts of a session.
 void addAnswers(const fs::path& folder, const std::string& trace_sha256, EgoRun& run) {
   std::error_code none;
@@ -54,7 +60,7 @@ void addAnswers(const fs::path& folder, const std::string& trace_sha256, EgoRun&
     bool shifted = open;
     for (const json& shift : answer.at("open_shifted"))
       shifted = shifted && shift.at("avoids").get<bool>();
-    run.contacts[number - 1].avoided[answer.at("driver")] = {
+    run.contacts[number - 1].avoided[driverIn(answer)] = {
         answer.at("closed").at("avoids").get<bool>(), open, shifted};
   }
 }
@@ -102,7 +108,11 @@ std::string settingOf(const json& summary) {
 
 /// The ego is called by its planner. Throws json::exception for a damaged summary.
 EgoRun readRun(const fs::path& folder, const fs::path& base) {
-  const json summary = json::parse(core::readFile(folder / "summary.json", "summary"));
+  const std::string text = core::readFile(folder / "summary.json", "summary");
+  if (readSummary(text, (folder / "summary.json").string()).status == "error")
+    throw core::InputError("'" + folder.string() + "' holds a session with status 'error', which no "
+                           "ranking may hold; move it elsewhere");
+  const json summary = json::parse(text);
   EgoRun run;
   run.setting = settingOf(summary);
   run.ego = summary.at("ego_planner");
@@ -307,6 +317,14 @@ const EgoFigures* findEgo(const EgoRanking& ranking, const std::string& ego) {
   return found == ranking.egos.end() ? nullptr : &*found;
 }
 
+Runs runsOn(const std::set<std::string>& scenarios, const Runs& runs) {
+  Runs chosen;
+  for (const EgoRun* run : runs) {
+    if (scenarios.count(run->scenario) != 0) chosen.push_back(run);
+  }
+  return chosen;
+}
+
 void separate(const std::map<std::string, Runs>& egos, RouteBootstrap& bootstrap,
               EgoRanking& ranking) {
   const auto careful = egos.find(kReferenceFamily.front());
@@ -324,7 +342,8 @@ void separate(const std::map<std::string, Runs>& egos, RouteBootstrap& bootstrap
   ranking.separation = *high_rate - *low_rate;
   if (showsIntervals(shared.size()))
     ranking.separation_interval = bootstrap.differenceInterval(low, high);
-  ranking.area_under_curve = areaUnderCurve(careful->second, constant->second);
+  ranking.area_under_curve =
+      areaUnderCurve(runsOn(shared, careful->second), runsOn(shared, constant->second));
 }
 
 /// Neighbors of the reference family that are not in order, or whose intervals overlap.
@@ -333,7 +352,7 @@ std::vector<std::string> orderRemarks(const EgoRanking& ranking) {
   const EgoFigures* before = nullptr;
   for (const char* name : kReferenceFamily) {
     const EgoFigures* now = findEgo(ranking, name);
-    if (now == nullptr) continue;
+    if (now == nullptr || now->kilometers <= 0.0) continue;
     if (before != nullptr && now->per_km <= before->per_km) {
       remarks.push_back("out of order: " + before->ego + " has " +
                         core::formatFixed(before->per_km, 2) + " contacts per km, " + now->ego +

@@ -3,10 +3,12 @@
 /// The rankings of egos as files and text.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/csv.h"
 #include "core/output_folder.h"
 #include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/separation/ego_ranking.h"
 #include "page/page_parts.h"
@@ -149,7 +151,7 @@ std::string shareOf(std::size_t count, std::size_t all) {
 
 /// What other drivers would have avoided; nothing where nobody asked.
 Markup avoidedTable(const EgoRanking& ranking) {
-  page::HtmlTable table({"Ego", "Driver that takes over", "Others answer to it (avoidable)",
+  page::HtmlTable table({"Ego", "Driver that takes over", "Others answer to it",
                          "Others as recorded", "... also half a second earlier and later"});
   bool any = false;
   for (const EgoFigures& ego : ranking.egos) {
@@ -180,7 +182,10 @@ std::string writeEgoRanking(const std::vector<std::filesystem::path>& folders,
                             const std::string& name) {
   const std::filesystem::path base = std::filesystem::absolute(folders.front());
   std::vector<EgoRun> runs;
+  std::set<std::filesystem::path> given;
   for (const std::filesystem::path& folder : folders) {
+    if (!given.insert(std::filesystem::weakly_canonical(folder)).second)
+      throw core::InputError("'" + folder.string() + "' is there twice; its runs would count twice");
     for (EgoRun& run : readEgoRuns(std::filesystem::absolute(folder), base))
       runs.push_back(std::move(run));
   }

@@ -24,20 +24,25 @@ double drawAngle(Draws& draws, double low, double high) {
 RoadLine drawLine(const std::string& kind, Draws& draws) {
   RoadLine line(Eigen::Vector2d::Zero(), 0.0);
   line.straight(20.0);
+  // `side`: 1 to the left, -1 to the right; angles in degrees, radii in m.
+  const auto arc = [&](double radius_low, double radius_high, double side, double low, double high) {
+    const double angle = side * drawAngle(draws, low, high);
+    line.arc(draws.uniform(radius_low, radius_high), angle);
+  };
   if (kind == "straight") {
     line.straight(draws.uniform(30.0, 70.0));
   } else if (kind == "left") {
-    line.arc(draws.uniform(7.0, 16.0), drawAngle(draws, 60.0, 110.0));
+    arc(7.0, 16.0, 1.0, 60.0, 110.0);
   } else if (kind == "right") {
-    line.arc(draws.uniform(5.0, 11.0), -drawAngle(draws, 60.0, 110.0));
+    arc(5.0, 11.0, -1.0, 60.0, 110.0);
   } else if (kind == "s_curve") {
     const double side = draws.sign();
-    line.arc(draws.uniform(10.0, 40.0), side * drawAngle(draws, 20.0, 60.0));
-    line.arc(draws.uniform(10.0, 40.0), -side * drawAngle(draws, 20.0, 60.0));
+    arc(10.0, 40.0, side, 20.0, 60.0);
+    arc(10.0, 40.0, -side, 20.0, 60.0);
   } else {
-    line.arc(draws.uniform(8.0, 14.0), -drawAngle(draws, 30.0, 60.0));
-    line.arc(draws.uniform(9.0, 16.0), drawAngle(draws, 60.0, 250.0));
-    line.arc(draws.uniform(8.0, 14.0), -drawAngle(draws, 30.0, 60.0));
+    arc(8.0, 14.0, -1.0, 30.0, 60.0);
+    arc(9.0, 16.0, 1.0, 60.0, 250.0);
+    arc(8.0, 14.0, -1.0, 30.0, 60.0);
   }
   return line.straight(30.0);
 }

@@ -121,8 +121,7 @@ void CarlaSessionNode::setUp() {
   const bool overwrite = parameters_.flag("overwrite", false);
   record::requireFreeFolder(results_, overwrite);
   setup_ = std::make_unique<session::SessionSetup>(options);
-  selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
-                                                 setup_->graph(), setup_->egoRoute(), options.mode);
+  selector_ = setup_->makeCbvSelector();
   cbv_planner_ = {setup_->makeCbvPlanner(), planners::seesImages(options.cbv_planner)};
   if (options.ego_planner != planning::kExternalPlanner)
     ego_planner_ = {setup_->makeEgoPlanner(), planners::seesImages(options.ego_planner)};

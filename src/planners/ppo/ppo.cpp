@@ -75,7 +75,6 @@ void Ppo::driveOn(const traffic::TrafficSnapshot& snapshot,
     if (arrived_.count(tasks[i].vehicle->id) != 0 && actions[i].fault.empty() && has_route)
       arrived.push_back(tasks[i]);
   }
-  if (arrived.empty()) return;
   for (planning::PlannedAction& driven : on_route_.plan(snapshot, arrived)) {
     for (planning::PlannedAction& action : actions) {
       if (action.vehicle_id != driven.vehicle_id) continue;

@@ -40,6 +40,8 @@ def record(folder, count):
 
 
 def judge(braking, last):
+    if braking.get(last) == 1.0:
+        return "full braking already at the last command"
     passed = delay(braking, last)
     # Full braking is asked for in the tick in which the limit has passed.
     if passed is None or passed > LIMIT + STEP + 1e-9:

@@ -39,7 +39,11 @@ def garbage(random):
 
 def connect(program, port, data):
     try:
-        with socket.create_connection(("127.0.0.1", port), timeout=2) as connection:
+        connection = socket.create_connection(("127.0.0.1", port), timeout=10)
+    except OSError as error:
+        return f"port {port} does not listen any more ({error})"
+    try:
+        with connection:
             connection.sendall(data)
             connection.settimeout(0.05)
             connection.recv(100)

@@ -63,4 +63,4 @@ def trials(_, count):
         yield f"{' '.join(session)}{' under load' if loaded else ''}", lambda s=session, busy=loaded: compare(s, busy, first)
 
 
-GATE = Gate("same_bytes", "a session repeats to the byte, half of them under load; another seed differs", 20, trials)
+GATE = Gate("same_bytes", "a session repeats to the byte, half of them under load; another seed differs", 28, trials)
