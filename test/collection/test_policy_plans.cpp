@@ -79,7 +79,7 @@ TEST(ReturnWeights, GrowWithTheReturnUpToThree) {
 }
 
 TEST(ReturnWeights, EqualReturnsWeighTheSame) {
-  for (const double weight : returnWeights({2.0, 2.0, 2.0})) EXPECT_EQ(weight, 1.0);
+  EXPECT_EQ(returnWeights({2.0, 2.0, 2.0}), (std::vector<double>{1.0, 1.0, 1.0}));
 }
 
 /// A sample of the scene with a gray image, as the expert would drive on.

@@ -119,14 +119,14 @@ TEST_F(LeaseTest, OfAKilledProcessOfThisHostIsTakenOverAtOnce) {
 
 TEST_F(LeaseTest, OfAnotherHostIsTakenOverOnceItStaysTheSameWhateverItsClockSays) {
   writeForeign("a.1", "000000000001");
-  LeaseFolder mine = leases(60.0, 0.05);
+  LeaseFolder mine = leases(60.0, 2.0);
   EXPECT_EQ(mine.claim("a"), nullptr);
-  std::this_thread::sleep_for(std::chrono::milliseconds(80));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
   writeForeign("a.1", "000000000002");
   EXPECT_EQ(mine.claim("a"), nullptr) << "it has beaten since";
   ASSERT_EQ(mine.holders().count("a"), 1U);
   EXPECT_TRUE(mine.holders().at("a").is_alive);
-  std::this_thread::sleep_for(std::chrono::milliseconds(80));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
   const auto lease = mine.claim("a");
   ASSERT_NE(lease, nullptr);
   EXPECT_TRUE(lease->isFromAnotherHost());

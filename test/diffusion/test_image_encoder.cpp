@@ -124,7 +124,9 @@ TEST(ImageEncoder, AgreesInNarrowPrecisionsWithThePlainReference) {
   const Model model = randomModel(160, 96);
   const traffic::CameraImage image = randomImage(160, 96);
   const std::vector<double> expected = ReferenceEncoder(model).encode(image);
-  for (const inference::Precision precision : narrowPrecisions()) {
+  const std::vector<inference::Precision> precisions = narrowPrecisions();
+  if (precisions.empty()) GTEST_SKIP() << "this processor has float32 alone";
+  for (const inference::Precision precision : precisions) {
     ImageEncoder encoder(model, precision);
     const std::vector<float> features = encoder.encode(image);
     const double error = relativeError(features, expected);

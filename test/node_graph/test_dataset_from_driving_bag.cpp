@@ -120,7 +120,9 @@ TEST_F(DrivingBagTest, SamplesAreTheDriveInTheVehiclesFrame) {
 TEST_F(DrivingBagTest, InferredActionsMakeTheMotionThatWasObserved) {
   writeDrive(file_);
   const dynamics::ActionRollout dynamics;
-  for (const learning::DrivingSample& sample : samples()) {
+  const auto all = samples();
+  ASSERT_FALSE(all.empty());
+  for (const learning::DrivingSample& sample : all) {
     traffic::Rollout again = sample.rollout;
     dynamics.rollOut(sample.speed, again);
     const double off = (again.leftCols(2) - sample.rollout.leftCols(2)).rowwise().norm().maxCoeff();
@@ -131,7 +133,9 @@ TEST_F(DrivingBagTest, InferredActionsMakeTheMotionThatWasObserved) {
 TEST_F(DrivingBagTest, ControlsAreTakenAsRecordedWhereTheyAreNamed) {
   writeDrive(file_);
   topics_.control = "/my/control";
-  for (const learning::DrivingSample& sample : samples()) {
+  const auto all = samples();
+  ASSERT_FALSE(all.empty());
+  for (const learning::DrivingSample& sample : all) {
     const traffic::ControlAction action = actionAt(static_cast<int>(sample.tick));
     EXPECT_DOUBLE_EQ(sample.rollout(0, traffic::kRolloutThrottle), action.throttle);
     EXPECT_DOUBLE_EQ(sample.rollout(0, traffic::kRolloutSteer), action.steer);

@@ -233,6 +233,8 @@ exit 1
         ignored = (SOURCE / ".dockerignore").read_text(encoding="utf-8").split()
         self.assertIn("build", ignored)
         tracked = subprocess.run(["git", "-C", SOURCE, "ls-files"], capture_output=True, text=True, check=False).stdout.splitlines()
+        if not tracked:
+            self.skipTest("the source is no checkout of git")
         self.assertEqual({path for path in tracked if path.split("/")[0] in ignored}, set())
 
     def test_packages_that_setup_installs_are_packages(self):
@@ -513,7 +515,7 @@ esac
         names = [test.id() for test in suite]
         with tempfile.TemporaryDirectory() as folder:
             junit.write_unittest(Path(folder) / "some.xml", "some", unittest.TextTestRunner(stream=io.StringIO()).run(suite), names)
-            counted = subprocess.run([SOURCE / "scripts" / "count_tests.py", folder], capture_output=True, text=True, check=False).stdout
+            counted = subprocess.run([sys.executable, SOURCE / "scripts" / "count_tests.py", folder], capture_output=True, text=True, check=False).stdout
         self.assertEqual(counted.splitlines()[-1], "1 passed, 0 failed, 1 skipped")
 
 

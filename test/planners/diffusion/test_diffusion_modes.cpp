@@ -373,6 +373,7 @@ TEST_F(DiffusionModes, EachPrecisionPlansNearTheOther) {
   DiffusionOptions options = optionsOf();
   options.precision = "fp32";
   const auto exact = expectPlans(options);
+  int narrow = 0;
   for (const std::string precision : {"bf16", "int8"}) {
     options.precision = precision;
     std::vector<planning::PlannedAction> plans;
@@ -381,6 +382,7 @@ TEST_F(DiffusionModes, EachPrecisionPlansNearTheOther) {
     } catch (const core::InputError&) {
       continue;  // not on this processor
     }
+    ++narrow;
     EXPECT_FALSE(samePlan(plans[0], exact[0])) << precision << ": is that float32?";
     for (std::size_t i = 0; i < 2; ++i) {
       const Eigen::Vector2d end = plans[i].rollout.back().state.position;
@@ -388,6 +390,7 @@ TEST_F(DiffusionModes, EachPrecisionPlansNearTheOther) {
       EXPECT_LT((end - exact[i].rollout.back().state.position).norm(), 1.1) << precision;
     }
   }
+  if (narrow == 0) GTEST_SKIP() << "this processor has float32 alone";
 }
 
 }  // namespace

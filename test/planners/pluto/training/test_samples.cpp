@@ -75,7 +75,10 @@ TEST_F(PlutoSamples, DecisionsThatAreNotATenthApartAreNamed) {
 TEST_F(PlutoSamples, EndBeforeAContact) {
   recorded_.contacts.push_back({200, {"a", "ego"}});
   const PlutoScene scene = sceneOf();
-  for (const PlutoPlace& place : ofDrive(placesOf(scene), 1)) {
+  const std::vector<PlutoPlace> places = ofDrive(placesOf(scene), 1);
+  ASSERT_FALSE(places.empty());
+  EXPECT_LT(places.front().decision, 100U);
+  for (const PlutoPlace& place : places) {
     if (place.decision < 100) {
       EXPECT_LE(place.decision + place.steps, 99U);
       EXPECT_LE(place.decision, 69U);
@@ -92,7 +95,10 @@ TEST_F(PlutoSamples, NoiseIsNoneInTheFirstSecondAndNeverLong) {
   for (std::uint64_t i = 50; i < 54; ++i) recorded_.disturbed.insert({"ego", 2 * i});
   for (std::uint64_t i = 100; i < 120; ++i) recorded_.disturbed.insert({"ego", 2 * i});
   const PlutoScene scene = sceneOf();
-  for (const PlutoPlace& place : ofDrive(placesOf(scene), 0)) {
+  const std::vector<PlutoPlace> places = ofDrive(placesOf(scene), 0);
+  ASSERT_FALSE(places.empty());
+  EXPECT_LT(places.front().decision, 100U);
+  for (const PlutoPlace& place : places) {
     EXPECT_FALSE(place.decision > 40 && place.decision < 54) << place.decision;
     if (place.decision < 100) {
       EXPECT_LE(place.decision + place.steps, 100U) << place.decision;
