@@ -3,12 +3,14 @@
 #include "exchange/commonroad_writer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "exchange/xml_tree.h"
 #include "rendering/lane_surface.h"
+#include "traffic/vehicle_class.h"
 
 namespace cdiff::exchange {
 namespace {
@@ -36,8 +38,12 @@ std::string laneletId(map::LaneIndex lane) { return std::to_string(lane + 1); }
 void addBound(xml_node lanelet, const char* name,
               const std::vector<rendering::CrossSection>& sections, double lateral) {
   const xml_node bound = append(lanelet, name);
+  // Readers take points with z for those of a road in space.
+  const bool flat = std::all_of(sections.begin(), sections.end(), [](const auto& section) {
+    return std::abs(section.at(0.0).z()) < 1e-9;
+  });
   for (const rendering::CrossSection& section : sections)
-    addPoint(bound, section.at(lateral), true);
+    addPoint(bound, section.at(lateral), !flat);
 }
 
 void addLinks(xml_node lanelet, const map::RoadNetwork& network, const map::Lane& lane) {
@@ -86,9 +92,23 @@ void addState(xml_node node, const SceneState& state) {
   addExact(node, "velocity", decimal(pose.speed));
 }
 
+/// A session's result has boxes alone.
+const char* typeOf(const traffic::VehicleDimensions& size) {
+  if (traffic::isUpright(size)) return "pedestrian";
+  switch (traffic::classOf(size)) {
+    case traffic::VehicleClass::kNarrow:
+      return "bicycle";
+    case traffic::VehicleClass::kLarge:
+      return "truck";
+    case traffic::VehicleClass::kCar:
+      break;
+  }
+  return "car";
+}
+
 void addObstacle(xml_node root, const SceneVehicle& vehicle, std::size_t id) {
   const xml_node obstacle = append(root, "dynamicObstacle", {{"id", std::to_string(id)}});
-  appendText(obstacle, "type", "car");
+  appendText(obstacle, "type", typeOf(vehicle.dimensions));
   addRectangle(append(obstacle, "shape"), vehicle.dimensions);
   addState(append(obstacle, "initialState"), vehicle.states.front());
   const xml_node trajectory = append(obstacle, "trajectory");
@@ -117,12 +137,19 @@ void addProblem(xml_node root, const SceneVehicle& ego, std::size_t id) {
   appendText(center, "y", decimal(last.pose.position.y()));
 }
 
+/// The format's names of maps have letters and digits alone.
+std::string mapName(const std::string& scenario) {
+  std::string name = core::fileName(scenario);
+  for (const char* other : {"_", "-", "."}) name = core::joinText(core::splitText(name, *other), "");
+  return name.empty() ? "Scenario" : name;
+}
+
 xml_node addRoot(pugi::xml_document& document, const RecordedScene& scene) {
   const SceneFacts& facts = scene.facts;
   const xml_node root =
       append(document, "commonRoad",
              {{"commonRoadVersion", "2020a"},
-              {"benchmarkID", "ZAM_" + core::fileName(facts.scenario) + "-1_1_T-1"},
+              {"benchmarkID", "ZAM_" + mapName(facts.scenario) + "-1_1_T-1"},
               {"date", "1970-01-01"},  // the result does not say when it was made
               {"author", "e2e_cdiff"},
               {"affiliation", "e2e_cdiff"},

@@ -52,8 +52,12 @@ Window windowOf(const std::vector<record::TraceRow>& rows, const SceneOptions& o
     throw InputError("'" + file.string() + "' lasts " + core::formatNumber(length) +
                      " s; --from must be before that, and --to at most that");
   }
-  return {static_cast<std::uint64_t>(std::llround(options.from / step)),
-          static_cast<std::uint64_t>(std::llround(last / step))};
+  const Window window{static_cast<std::uint64_t>(std::llround(options.from / step)),
+                      static_cast<std::uint64_t>(std::llround(last / step))};
+  if (window.first < window.last) return window;
+  throw InputError("--from " + core::formatNumber(options.from) + " --to " +
+                   core::formatNumber(last) + ": shorter than a tick; expected at least " +
+                   core::formatNumber(step) + " s");
 }
 
 /// Courses of all vehicles within the window, without elevation.
@@ -182,7 +186,7 @@ void takeContact(const nlohmann::json& summary, SceneFacts& facts) {
 }  // namespace
 
 void SceneOptions::validate() const {
-  if (from < 0.0 || (to && *to <= from)) {
+  if (!(from >= 0.0) || (to && !(*to > from))) {
     throw InputError("--from " + core::formatNumber(from) +
                      (to ? " --to " + core::formatNumber(*to) : "") +
                      ": expected 0 <= from < to [s]");

@@ -85,6 +85,8 @@ RoadNetwork NetworkReader::read(std::string_view xml) {
   }
   const pugi::xml_node net = document.child("net");
   if (!net) fail("no <net> element; a SUMO network (*.net.xml) was expected");
+  if (net.attribute("lefthand").as_bool())
+    fail("lefthand=\"true\": left-hand traffic is not supported");
   readLocation(net);
   for (const pugi::xml_node& edge : net.children("edge")) readEdge(edge);
   if (network_.lanes_.empty()) fail("no lanes; at least one <edge> with a <lane> was expected");

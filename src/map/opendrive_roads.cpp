@@ -151,7 +151,7 @@ Piece pieceOf(const pugi::xml_node& node) {
   return piece;
 }
 
-Section sectionOf(const pugi::xml_node& node) {
+Section sectionOf(const pugi::xml_node& node, const std::string& road) {
   Section section;
   section.begin = number(node, "s");
   for (const char* side : {"left", "right"}) {
@@ -159,6 +159,9 @@ Section sectionOf(const pugi::xml_node& node) {
       std::vector<Cubic>& widths = section.widths[lane.attribute("id").as_int()];
       for (const pugi::xml_node& width : lane.children("width"))
         widths.push_back(cubicOf(width, "sOffset", section.begin));
+      if (widths.empty() && lane.child("border"))
+        throw InputError("road '" + road + "': lane " + lane.attribute("id").value() +
+                         " has a <border>, which is not supported; expected a <width>");
     }
   }
   return section;
@@ -200,7 +203,7 @@ OpenDriveRoads::Road::Road(const pugi::xml_node& node)
   for (const pugi::xml_node& piece : node.child("planView").children("geometry"))
     pieces.push_back(pieceOf(piece));
   for (const pugi::xml_node& section : node.child("lanes").children("laneSection"))
-    sections.push_back(sectionOf(section));
+    sections.push_back(sectionOf(section, id));
   if (pieces.empty() || sections.empty() || length <= 0.0 || length > 1e6)
     throw InputError("road '" + id + "' has no geometry or no lanes");
   const int count = std::max(1, static_cast<int>(std::ceil(length / kSpacing)));

@@ -79,13 +79,15 @@ Dynamics readOffsetDynamics(const XoscElement& element) {
   return dynamics;
 }
 
-ActionWhat readLaneOffset(const XoscElement& element, Reading&) {
+/// scenario_runner, for which files with CARLA's axes are made, counts the offset to the right.
+ActionWhat readLaneOffset(const XoscElement& element, Reading& reading) {
   LaneOffsetAction action;
+  action.continuous = element.flag("continuous", false);
   action.dynamics = readOffsetDynamics(element.child("LaneOffsetActionDynamics"));
   const XoscElement target = element.child("LaneOffsetTarget").only();
   if (target.name() != "AbsoluteTargetLaneOffset")
     Reading::refuse(target, "an offset from another vehicle's");
-  action.value = target.number("value");
+  action.value = (reading.carla ? -1.0 : 1.0) * target.number("value");
   return action;
 }
 
@@ -358,11 +360,7 @@ XoscElement unwrapped(const XoscElement& wrapper) {
 }
 
 ActionWhat readWhat(XoscElement element, Reading& reading) {
-  constexpr int kDeepest = 8;
-  for (int depth = 0; isWrapper(element.name()); ++depth) {
-    if (depth == kDeepest) element.fail("elements are nested too deeply; expected an action");
-    element = unwrapped(element);
-  }
+  while (isWrapper(element.name())) element = unwrapped(element);
   const auto& row = rowOf(kActions, element, "this action");
   return row.read(element, reading);
 }

@@ -154,6 +154,7 @@ void Actor::stopOffset() {
 void Actor::startOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
   replace(lateral_, performing);
   wanted_offset_ = nullptr;
+  offset_kept_ = false;
   if (!route_) return finish(lateral_);  // there is nothing to be beside
   const bool by_distance = dynamics.dimension == Dynamics::Dimension::kDistance;
   offset_change_ = Transition(offset_, offset, dynamics.shape, extentOf(dynamics, offset - offset_),
@@ -170,9 +171,11 @@ void Actor::changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_mid
   startOffset(dynamics, route_ ? route_->path().project(target).lateral_offset : 0.0, performing);
 }
 
-void Actor::setOffset(const Dynamics& dynamics, double offset, const Performing& performing) {
+void Actor::setOffset(const Dynamics& dynamics, double offset, bool always,
+                      const Performing& performing) {
   if (trajectory_) endTrajectory();
   startOffset(dynamics, offset, performing);
+  offset_kept_ = always;
 }
 
 void Actor::adaptOffset(std::function<double()> wanted, double speed, bool always,
@@ -259,7 +262,7 @@ void Actor::changeOffset(double step, double meters) {
   }
   if (!reached) return;
   stopOffset();
-  finish(lateral_);
+  if (!offset_kept_) finish(lateral_);
 }
 
 void Actor::advanceOnLanes(double meters, double step) {
@@ -271,10 +274,11 @@ void Actor::advanceOnLanes(double meters, double step) {
     speed_ = 0.0;
   }
   arc_length_ += meters;
+  const bool jumps = offset_change_ && offset_change_->isAtOnce();
   changeOffset(step, meters);
   if (meters <= 0.0 && offset_ == before) return;
   const geometry::Pose2d on_path = path.extendedPoseAt(arc_length_);
-  const double turned = meters > 0.0 ? std::atan2(offset_ - before, meters) : 0.0;
+  const double turned = meters > 0.0 && !jumps ? std::atan2(offset_ - before, meters) : 0.0;
   reference_.pose = {on_path.toMap({0.0, offset_}), core::wrapAngle(on_path.heading + turned)};
   reference_.elevation = path.pointAt(arc_length_).z();
 }
@@ -286,13 +290,12 @@ void Actor::endTrajectory() {
   takeRoute(route ? std::make_shared<const map::Route>(*route) : nullptr);
 }
 
-/// Speed on the last part of a timed course [m/s]; `otherwise` where it has but one place.
-double Actor::lastSpeed(const Trajectory& course, double otherwise) {
-  const std::size_t count = course.times.size();
-  if (count < 2 || course.times[count - 1] <= course.times[count - 2]) return otherwise;
+/// Speed of a timed course before one of its places [m/s]; `otherwise` where there is no way.
+double Actor::speedBefore(std::size_t place, const Trajectory& course, double otherwise) {
+  if (place == 0 || course.times[place] <= course.times[place - 1]) return otherwise;
   const Eigen::Vector2d way =
-      course.places[count - 1].pose.position - course.places[count - 2].pose.position;
-  return way.norm() / (course.times[count - 1] - course.times[count - 2]);
+      course.places[place].pose.position - course.places[place - 1].pose.position;
+  return way.norm() / (course.times[place] - course.times[place - 1]);
 }
 
 /// On a trajectory without times.
@@ -324,11 +327,12 @@ void Actor::advanceOnTrajectory(double time, double step, double meters) {
                        core::wrapAngle(from.pose.heading + share * turned)};
     reference_.elevation = from.elevation + share * (to.elevation - from.elevation);
   }
-  speed_ = (reference_.pose.position - before).norm() / step;
-  if (next == course.times.size()) {
-    speed_ = lastSpeed(course, speed_);  // not that of a step in whose midst the course ends
-    endTrajectory();
-  }
+  const std::size_t last = course.times.size() - 1;
+  // Not that of the way to the course's beginning, or of a step in whose midst the course ends.
+  if (course.begun) speed_ = (reference_.pose.position - before).norm() / step;
+  if (!course.begun || next > last) speed_ = next == 0 ? 0.0 : speedBefore(std::min(next, last), course, speed_);
+  course.begun = true;
+  if (next > last) endTrajectory();
 }
 
 void Actor::advance(double time, double step) {

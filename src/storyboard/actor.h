@@ -25,6 +25,8 @@ class Transition {
   void advance(double seconds, double meters) { progress_ += by_distance_ ? meters : seconds; }
   double value() const;
   bool over() const { return progress_ >= extent_ - 1e-9; }
+  /// Whether the value jumps.
+  bool isAtOnce() const { return shape_ == Dynamics::Shape::kStep || extent_ <= 0.0; }
 
  private:
   double from_;
@@ -74,7 +76,9 @@ class Actor {
   /// `target`: where it ends abreast, in or beside the middle of that lane.
   void changeLane(const Dynamics& dynamics, const Eigen::Vector2d& lane_middle,
                   const Eigen::Vector2d& target, const Performing& performing);
-  void setOffset(const Dynamics& dynamics, double offset, const Performing& performing);
+  /// `always`: it does not end when it is reached.
+  void setOffset(const Dynamics& dynamics, double offset, bool always,
+                 const Performing& performing);
   /// Keeps the offset that `wanted` says [m, to the left of the lane], changed by at most `speed`
   /// [m/s], until it is reached, or always.
   void adaptOffset(std::function<double()> wanted, double speed, bool always,
@@ -105,6 +109,7 @@ class Actor {
     geometry::Polyline line;
     double driven = 0.0;
     Performing performing;
+    bool begun = false;
   };
   void takeRoute(std::shared_ptr<const map::Route> route);
   void startOffset(const Dynamics& dynamics, double offset, const Performing& performing);
@@ -116,7 +121,7 @@ class Actor {
   void changeSpeed(double step);
   void advanceOnLanes(double meters, double step);
   void advanceStraight(double meters);
-  static double lastSpeed(const Trajectory& course, double otherwise);
+  static double speedBefore(std::size_t place, const Trajectory& course, double otherwise);
   void advanceOnLine(double meters);
   void advanceOnTrajectory(double time, double step, double meters);
   void endTrajectory();

@@ -122,6 +122,12 @@ void readTimeToCollision(const XoscElement& element, const Reading& reading,
 void readCollision(const XoscElement& element, const Reading&, EntityCondition& condition) {
   condition.measure = Measure::kCollision;
   if (const auto entity = element.find("EntityRef")) condition.other = entity->text("entityRef");
+  const auto type = element.find("ByType");
+  if (!type) return;
+  using Kind = Entity::Kind;
+  const std::vector<std::vector<Kind>> kinds = {
+      {Kind::kPedestrian}, {Kind::kVehicle, Kind::kBicycle}, {Kind::kObject}};
+  condition.other_kinds = kinds[type->choice("type", {"pedestrian", "vehicle", "miscellaneous"})];
 }
 
 struct ConditionRow {

@@ -17,8 +17,10 @@ using Weighted = Eigen::Matrix<double, 5, 1>;
 TimedPoint pointAt(const Spline& spline, const std::vector<Weighted>& controls, double parameter) {
   const std::size_t degree = spline.order - 1;
   const auto& knots = spline.knots;
-  std::size_t span = degree;
-  while (span + 1 < controls.size() && knots[span + 1] <= parameter) ++span;
+  const auto first = knots.begin() + static_cast<std::ptrdiff_t>(degree + 1);
+  const auto last = knots.begin() + static_cast<std::ptrdiff_t>(controls.size());
+  const std::size_t span =
+      degree + static_cast<std::size_t>(std::upper_bound(first, last, parameter) - first);
   std::vector<Weighted> points(controls.begin() + static_cast<std::ptrdiff_t>(span - degree),
                                controls.begin() + static_cast<std::ptrdiff_t>(span + 1));
   for (std::size_t round = 1; round <= degree; ++round) {

@@ -40,6 +40,10 @@ void Catalogs::add(const std::string& file) {
 }
 
 XoscElement Catalogs::entry(const XoscElement& reference) const {
+  constexpr std::size_t kMost = 100000;
+  if (++taken_ > kMost)
+    reference.fail("entries of catalogs refer to each other more than " + std::to_string(kMost) +
+                   " times");
   const std::string catalog = reference.text("catalogName");
   const std::string name = reference.text("entryName");
   const auto found = entries_.find(catalog);

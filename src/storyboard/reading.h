@@ -37,6 +37,7 @@ class Catalogs {
   void add(const std::string& file);
   std::vector<std::string> files_;
   std::map<std::string, std::vector<XoscElement>> entries_;  ///< by catalog
+  mutable std::size_t taken_ = 0;  ///< entries: a few that refer to each other can be many
 };
 
 /// What the readers of one file share.

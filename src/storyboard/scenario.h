@@ -90,6 +90,7 @@ struct LaneChangeAction {
 struct LaneOffsetAction {
   Dynamics dynamics;
   double value = 0.0;
+  bool continuous = false;  ///< never ends by itself
 };
 
 /// Drives along lanes through these positions.
@@ -240,6 +241,18 @@ struct ElementStateCondition {
 /// Stands for a condition that is not supported: it never holds.
 struct NoCondition {};
 
+/// A vehicle, pedestrian or object. Its reference point is the rear axle of a vehicle.
+struct Entity {
+  enum class Kind { kVehicle, kBicycle, kPedestrian, kObject };
+
+  std::string name;
+  Source source;
+  Kind kind = Kind::kVehicle;
+  traffic::VehicleDimensions dimensions;
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< of the box, from the reference point [m]
+  std::string controller;  ///< name of its controller; empty where it has none
+};
+
 /// Something that is measured of entities.
 struct EntityCondition {
   enum class Measure {
@@ -264,6 +277,7 @@ struct EntityCondition {
   Rule rule = Rule::kGreater;
   double value = 0.0;  ///< [m/s], [m/s^2], [s] or [m]
   std::string other;   ///< entity; empty: a position, or for collisions anybody
+  std::vector<Entity::Kind> other_kinds;  ///< collisions with any of these; empty: of any kind
   std::optional<Position> place;
   bool freespace = false;   ///< between boxes, else between reference points
   bool lane_frame = false;  ///< along the lanes, else in the entity's own frame
@@ -325,18 +339,6 @@ struct Act {
 struct Story {
   std::string name;
   std::vector<Act> acts;
-};
-
-/// A vehicle, pedestrian or object. Its reference point is the rear axle of a vehicle.
-struct Entity {
-  enum class Kind { kVehicle, kBicycle, kPedestrian, kObject };
-
-  std::string name;
-  Source source;
-  Kind kind = Kind::kVehicle;
-  traffic::VehicleDimensions dimensions;
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< of the box, from the reference point [m]
-  std::string controller;  ///< name of its controller; empty where it has none
 };
 
 /// An action of the storyboard's beginning.

@@ -20,6 +20,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 constexpr SpeedLimits kUsualLimits{10.0, 10.0};
 
+constexpr double kRounding = 0.1;  // [m] of a step's way
+
 /// The speed [m/s] with which a change to the last one at an even rate covers a distance [m] in a
 /// time [s]; without a last one the speed stays.
 double speedToArrive(double meters, double seconds, std::optional<double> last) {
@@ -57,6 +59,20 @@ bool compareTexts(Rule rule, const std::string& left, const std::string& right) 
   const auto first = core::parseNumber(left);
   const auto second = core::parseNumber(right);
   return first && second ? compareNumbers(rule, *first, *second) : compare(rule, left, right);
+}
+
+/// Arc length on a line that goes straight on before its start and behind its end [m].
+double extendedArcLength(const geometry::Polyline& line, const Eigen::Vector2d& place) {
+  const double found = line.project(place).arc_length;
+  const double end = found <= 0.0 ? 0.0 : line.length();
+  if (found > 0.0 && found < end) return found;
+  return end + geometry::direction(line.headingAt(end)).dot(place - line.positionAt(end));
+}
+
+/// Arc length, and distance to the left, of a place beside such a line [m].
+Eigen::Vector2d besideLine(const geometry::Polyline& line, const Eigen::Vector2d& place) {
+  const double s = extendedArcLength(line, place);
+  return {s, line.extendedPoseAt(s).toBody(place).y()};
 }
 
 }  // namespace
@@ -112,15 +128,26 @@ double TrafficStage::alongDistance(const EntityCondition& condition, const std::
   const MapPose& own = member(entity).reference;
   const map::Route* const route = condition.lane_frame ? routeOf(entity) : nullptr;
   Eigen::Vector2d difference = own.pose.toBody(target);
-  if (route != nullptr) {
-    const auto here = route->path().project(own.pose.position);
-    const auto there = route->path().project(target);
-    difference = {there.arc_length - here.arc_length, there.lateral_offset - here.lateral_offset};
-  }
+  if (route != nullptr)
+    difference = besideLine(route->path(), target) - besideLine(route->path(), own.pose.position);
   const bool lateral = condition.along == Along::kLateral;
   const double found = std::abs(lateral ? difference.y() : difference.x());
-  if (!condition.freespace || condition.other.empty()) return found;
-  return std::max(0.0, found - boxesBetween(entity, condition.other, lateral));
+  if (!condition.freespace) return found;
+  const double boxes = condition.other.empty() ? boxToPlace(entity, target, lateral)
+                                               : boxesBetween(entity, condition.other, lateral);
+  return std::max(0.0, found - boxes);
+}
+
+/// By how much the distance from the reference point to a place exceeds that from the box, along or
+/// across the entity's heading [m].
+double TrafficStage::boxToPlace(const std::string& entity, const Eigen::Vector2d& place,
+                                bool lateral) const {
+  const MapPose& own = member(entity).reference;
+  const Eigen::Vector2d forward = geometry::direction(own.pose.heading);
+  const Eigen::Vector2d axis = lateral ? geometry::leftNormal(forward) : forward;
+  return std::abs(axis.dot(place - own.pose.position)) -
+         std::abs(axis.dot(place - member(entity).state.position)) +
+         geometry::halfExtent(boxOf(entity), axis);
 }
 
 /// By how much the distance between two reference points exceeds that between the boxes, along or
@@ -144,8 +171,11 @@ double TrafficStage::distance(const EntityCondition& condition, const std::strin
                                      ? member(condition.other).reference.pose.position
                                      : places_.resolve(*condition.place, pose_of_).pose.position;
   if (condition.along != Along::kStraight) return alongDistance(condition, entity, target);
-  if (to_entity && condition.freespace)
-    return geometry::distance(boxOf(entity), boxOf(condition.other));
+  if (condition.freespace) {
+    const geometry::OrientedBox there =
+        to_entity ? boxOf(condition.other) : geometry::OrientedBox{target, 0.0, 0.0, 0.0};
+    return geometry::distance(boxOf(entity), there);
+  }
   return (target - member(entity).reference.pose.position).norm();
 }
 
@@ -172,7 +202,10 @@ bool TrafficStage::touch(const std::string& first, const std::string& second) co
 
 bool TrafficStage::collides(const EntityCondition& condition, const std::string& entity) const {
   const auto meant = [&](const std::string& other) {
-    return condition.other.empty() || other == condition.other;
+    const auto& kinds = condition.other_kinds;
+    const Entity::Kind kind = member(other).actor->entity().kind;
+    return (condition.other.empty() || other == condition.other) &&
+           (kinds.empty() || std::count(kinds.begin(), kinds.end(), kind) != 0);
   };
   const auto touched = touched_.find(entity);
   if (touched != touched_.end() &&
@@ -321,18 +354,6 @@ void TrafficStage::perform(const SpeedProfileAction& action, Actor& actor,
   actor.setSpeeds(std::move(targets), performing);
 }
 
-namespace {
-
-/// Arc length on a line that goes straight on before its start and behind its end [m].
-double extendedArcLength(const geometry::Polyline& line, const Eigen::Vector2d& place) {
-  const double found = line.project(place).arc_length;
-  const double end = found <= 0.0 ? 0.0 : line.length();
-  if (found > 0.0 && found < end) return found;
-  return end + geometry::direction(line.headingAt(end)).dot(place - line.positionAt(end));
-}
-
-}  // namespace
-
 /// How far the other's reference point is ahead of the entity's, along its heading or the lanes
 /// that it follows [m].
 double TrafficStage::aheadBy(const std::string& entity, const std::string& other,
@@ -384,7 +405,7 @@ void TrafficStage::perform(const LateralDistanceAction& action, Actor& actor,
   const auto offsetOf = [this, self](const std::string& entity) {  // from the own lane [m]
     const map::Route* const route = routeOf(self);
     if (route == nullptr) return 0.0;
-    return route->path().project(member(entity).reference.pose.position).lateral_offset;
+    return besideLine(route->path(), member(entity).reference.pose.position).y();
   };
   const double between = offsetOf(self) - offsetOf(action.entity);
   const bool left =
@@ -505,7 +526,7 @@ void TrafficStage::perform(const RouteAction& action, Actor& actor,
 
 void TrafficStage::perform(const LaneOffsetAction& action, Actor& actor,
                            const Actor::Performing& performing) {
-  actor.setOffset(action.dynamics, action.value, performing);
+  actor.setOffset(action.dynamics, action.value, action.continuous, performing);
 }
 
 void TrafficStage::perform(const Action& action, const std::string& entity,
@@ -557,7 +578,8 @@ std::vector<std::shared_ptr<Performance>> TrafficStage::start(
 
 void TrafficStage::measure(Member& known, const traffic::VehicleState& before, double step) const {
   known.acceleration = (known.state.speed - before.speed) / step;
-  known.traveled += (known.state.position - before.position).norm();
+  const double farthest = std::max(before.speed, known.state.speed) * step + kRounding;
+  known.traveled += std::min(farthest, (known.state.position - before.position).norm());  // no jump
   const auto count = [step](double& seconds, bool more) { seconds = more ? seconds + step : 0.0; };
   count(known.standing, known.state.speed < 0.05);
   count(known.off_road, !places_.isOnLane(known.reference));

@@ -75,6 +75,7 @@ class TrafficStage : public Stage {
                                       const std::string& entity) const;
   bool measured(const EntityCondition& condition, const std::string& entity) const;
   double distance(const EntityCondition& condition, const std::string& entity) const;
+  double boxToPlace(const std::string& entity, const Eigen::Vector2d& place, bool lateral) const;
   double boxesBetween(const std::string& entity, const std::string& other, bool lateral) const;
   double aheadBy(const std::string& entity, const std::string& other, bool along_lanes) const;
   double alongDistance(const EntityCondition& condition, const std::string& entity,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string_view>
 
 #include "core/file.h"
@@ -35,6 +36,23 @@ struct XoscElement::Document {
   }
 };
 
+namespace {
+
+/// Finds an element that is nested too deeply: readers call each other for what is nested.
+class TooDeep : public pugi::xml_tree_walker {
+ public:
+  pugi::xml_node found;
+
+ private:
+  bool for_each(pugi::xml_node& node) override {
+    constexpr int kDeepest = 100;
+    if (depth() > kDeepest) found = node;
+    return !found;
+  }
+};
+
+}  // namespace
+
 XoscElement XoscElement::load(const std::string& file) {
   auto document = std::make_shared<Document>();
   document->read(file);
@@ -49,9 +67,13 @@ XoscElement XoscElement::load(const std::string& file) {
     throw InputError(file + ":" + std::to_string(document->lineAt(parsed.offset)) +
                      ": not XML: " + parsed.description());
   }
-  const pugi::xml_node root = document->tree.child("OpenSCENARIO");
+  pugi::xml_node root = document->tree.child("OpenSCENARIO");
   if (!root) throw InputError(file + ":1: the root element <OpenSCENARIO> was expected");
-  return {root, document, std::make_shared<const Parameters>(), 0};
+  const XoscElement element{root, document, std::make_shared<const Parameters>(), 0};
+  TooDeep too_deep;
+  root.traverse(too_deep);
+  if (too_deep.found) element.of(too_deep.found).fail("elements are nested too deeply");
+  return element;
 }
 
 Source XoscElement::source() const {
@@ -171,16 +193,17 @@ XoscElement XoscElement::asEntryFor(const XoscElement& referring) const {
 }
 
 XoscElement XoscElement::declaring(const Parameters& given) const {
-  Parameters declared;
+  std::set<std::string> declared;
   const auto list = find("ParameterDeclarations");
-  XoscElement scope = *this;
+  const auto known = std::make_shared<Parameters>(*parameters_);  // grows by each declaration
+  const XoscElement scope{node_, document_, known, entries_};
   if (list) {
     for (const pugi::xml_node& node : list->node_.children("ParameterDeclaration")) {
-      const XoscElement declaration{node, document_, scope.parameters_, entries_};
+      const XoscElement declaration = scope.of(node);
       const std::string name = declaration.text("name");
       const auto replaced = given.find(name);
-      declared[name] = replaced != given.end() ? replaced->second : declaration.text("value");
-      scope = scope.with(declared);
+      (*known)[name] = replaced != given.end() ? replaced->second : declaration.text("value");
+      declared.insert(name);
     }
   }
   for (const auto& entry : given)

@@ -331,7 +331,8 @@ bool LiveSession::addFrame(NewsCursor& cursor, Json& news) {
     const std::uint64_t known = view->tick + 1;
     if (cursor.views[slot] == known) continue;
     cursor.views[slot] = known;
-    news["views"][std::to_string(slot)] = pictures_.view(*view);
+    auto shown = pictures_.view(*view);
+    if (!shown.is_null()) news["views"][std::to_string(slot)] = std::move(shown);  // of one long gone
   }
   return true;
 }

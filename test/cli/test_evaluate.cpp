@@ -2,10 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <signal.h>
 
+#include <set>
+
 #include "cli/evaluate_command.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "evaluation/run_record.h"
+#include "session/scenario_options.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -44,6 +47,8 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   part.back() = "seed=3";
   EXPECT_EQ(cdiff(part), 3);
   expectOutput("--only seed=3: no run of the matrix has it; levels are 1, 2");
+  part.back() = "seed=";
+  EXPECT_EQ(cdiff(part), 3);
   part.back() = "planner=plant";
   EXPECT_EQ(cdiff(part), 3);
   expectOutput(
@@ -187,8 +192,59 @@ TEST_F(EvaluateCommand, RefusesWrongInput) {
   EXPECT_EQ(cdiff({"evaluate", "smok", "--results", folder("results")}), 3);
   expectOutput("the nearest shipped one is 'smoke'");
   EXPECT_EQ(cdiff({"evaluate", "--results", folder("results")}), 3);
+  EXPECT_EQ(cdiff({"evaluate", "smoke", "--routes", "1", "--results", folder("results")}), 3);
+  expectOutput("--bench2drive");
+  EXPECT_FALSE(fs::exists(folder("results")));
   EXPECT_EQ(cdiff({"report", "--compare", folder("nothing"), folder("nothing")}), 3);
   expectOutput("holds no records");
+}
+
+TEST_F(EvaluateCommand, OneMoreEgoLeavesTheOthers) {
+  const auto runsOf = [&](const std::string& egos, const std::string& ego) {
+    const std::string matrix = write("matrix.yaml", "scenarios: [arterial_exit]\n" + egos + kShort);
+    fs::remove_all(folder("results"));
+    EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results"), "--engine", "print",
+                     "--ego", ego}),
+              0)
+        << output();
+    std::multiset<std::string> planners;
+    for (const RunRecord& record : readRecords(folder("results")))
+      planners.insert(record.factors.at("ego_planner"));
+    return planners;
+  };
+  const std::multiset<std::string> both = {"constant", "pdm_lite"};
+  EXPECT_EQ(runsOf("", "constant"), both) << "beside that of the scenario";
+  EXPECT_EQ(runsOf("ego_planners: [pdm_lite]\n", "constant"), both);
+  EXPECT_EQ(runsOf("ego_planners: [pdm_lite]\n", "constant constant.speed=5"), both);
+  EXPECT_EQ(runsOf("ego_planners: [pdm_lite, constant]\n", "constant constant.speed=5").size(), 3U);
+}
+
+// A run whose scenario has changed, or has another name by now, counts nowhere.
+TEST_F(EvaluateCommand, StaleResultsOfABatchDoNotCount) {
+  const auto scenario = [&](const std::string& name, double speed) {
+    session::ScenarioOptions options = session::loadScenario("arterial_exit");
+    options.name = name;
+    options.cbv_planner = "pdm_lite";
+    options.target_speed = speed;
+    options.protocol.time_limit = 1.0;
+    return core::dumpOptions(options);
+  };
+  write("a.yaml", scenario("a", 5.0));
+  write("b.yaml", scenario("b", 5.0));
+  const std::string matrix = write("matrix.yaml", "scenarios: [a.yaml, b.yaml]\n");
+  const std::vector<std::string> words = {"evaluate", matrix, "--results", folder("results")};
+  ASSERT_LE(cdiff(words), 1) << output();
+  write("b.yaml", scenario("b", 6.0));
+  std::vector<std::string> part = words;
+  part.insert(part.end(), {"--resume", "--only", "scenario=a"});
+  ASSERT_LE(cdiff(part), 1) << output();
+  for (const RunRecord& record : readRecords(folder("results")))
+    EXPECT_EQ(record.complete(), record.id.front() == 'a') << record.id;
+  write("b.yaml", scenario("c", 5.0));
+  part = words;
+  part.emplace_back("--resume");
+  EXPECT_EQ(cdiff(part), 3);
+  expectOutput("holds a run that the matrix does not have any more");
 }
 
 TEST_F(EvaluateCommand, ReplacesNoBatchThatItIsToFollowOrEnd) {

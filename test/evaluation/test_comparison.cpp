@@ -192,8 +192,12 @@ TEST(Comparison, RefusesAScenarioWithAnotherNetwork) {
   b.records[0].inputs = {{"network", "11"}, {"program", "2"}};
   EXPECT_EQ(errorOf([&] { requireComparable(a, b); }), "no error");
   b.records[0].inputs["network"] = "22";
-  EXPECT_NE(errorOf([&] { requireComparable(a, b); }).find("its network is another file"),
+  EXPECT_NE(errorOf([&] { requireComparable(a, b); }).find("its network is not the same"),
             std::string::npos);
+  b.records[0].inputs = {{"network", "11"}, {"demand", "3"}, {"program", "2"}};
+  EXPECT_NE(errorOf([&] { requireComparable(a, b); }).find("its demand is not the same"),
+            std::string::npos)
+      << "only one side has a demand file";
 }
 
 TEST(Comparison, PairsByWhatBothSetsShare) {
@@ -295,6 +299,10 @@ TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
   EXPECT_NE(textOf([&] {
               compareLevels({"A", records}, "guidance_profile", "nine", {});
             }).find("the nearest is 'none'"),
+            std::string::npos);
+  EXPECT_NE(textOf([] {
+              checkMeasureNames({"ego_driving_score", "ego_driving_score"});
+            }).find("is there twice"),
             std::string::npos);
   EXPECT_NE(textOf([] { checkMeasureNames({"ego_driving_scores"}); }).find("'ego_driving_score'"),
             std::string::npos);

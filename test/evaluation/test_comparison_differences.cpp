@@ -62,6 +62,14 @@ TEST(Comparison, SaysInHowManyPairsASettingDiffers) {
   EXPECT_EQ(differenceOf(a, b), "A and B differ in: key max_cbv (A 2, B 2, 3, in 1 of 2 pairs).");
 }
 
+// Two runs of B are averaged into one pair.
+TEST(Comparison, NamesEveryLevelOfAGroup) {
+  RunSet a{"A", {recordWith({"s", "1", "none"}, 10)}};
+  RunSet b{"B", {recordWith({"s", "1", "speed"}, 10), recordWith({"s", "1", "drive"}, 20)}};
+  const std::string text = differenceOf(a, b);
+  EXPECT_NE(text.find("guidance_profile (A none, B drive and speed)"), std::string::npos) << text;
+}
+
 TEST(Comparison, CountsOneOfAKind) {
   const RunSet a = setWith("A", "none", {});
   const std::string text = comparisonMarkdown({compareRuns(a, a, sharedFactors(a, a), {})});

@@ -55,6 +55,16 @@ TEST(DoseResponse, IntervalDrawsTheSameRoutesAtEveryDose) {
   EXPECT_DOUBLE_EQ(responses.front().interval->high, 1.0);
 }
 
+TEST(DoseResponse, ADoseHasOneGuidanceProfile) {
+  std::vector<RunRecord> records;
+  for (int dose = 1; dose <= 3; ++dose)
+    records.push_back(runOf("weight_" + std::to_string(dose), "a", dose));
+  records[1].factors["guidance_profile"] = "other";  // as an axis of profiles has
+  EXPECT_EQ(doseResponses(records, {"ego_driving_score"}).size(), 1U);
+  records.push_back(runOf("weight_2", "a", 5));
+  EXPECT_THROW(doseResponses(records, {"ego_driving_score"}), core::InputError);
+}
+
 TEST(DoseResponse, WrongInputIsRefused) {
   EXPECT_THROW(
       doseResponses({runOf("speed_1", "a", 1), runOf("speed_2", "a", 1)}, {"ego_driving_score"}),

@@ -83,7 +83,7 @@ TEST(Ranking, NamesTheHardestWithItsUncertainty) {
       << sentences[1];
   EXPECT_EQ(
       sentences[2],
-      "The first has more than all others, beyond chance (p <= 0.016 after Holm's correction).");
+      "The first has more than all others, beyond chance (p <= 0.023 after Holm's correction).");
 }
 
 TEST(Ranking, SaysWhichDifferenceIsNotShown) {

@@ -201,6 +201,31 @@ TEST_F(SearchTest, AsksACarefulDriverAboutContactsInModeChallenging) {
   }
 }
 
+TEST_F(SearchTest, ABrokenAnswerOfTheCarefulDriverIsNoAnswer) {
+  request_.mode = "challenging";
+  request_.budget = 4;
+  for (const SearchCase& one : casesOf(request_)) {
+    if (one.isFound()) broken_ = one.id + "_careful";
+  }
+  ASSERT_FALSE(broken_.empty());
+  for (const SearchCase& one : casesOf(request_)) {
+    if (one.id + "_careful" != broken_) continue;
+    EXPECT_FALSE(one.careful_survives.has_value());
+    EXPECT_TRUE(one.careful_broke);
+    EXPECT_FALSE(one.isFound());
+    EXPECT_EQ(one.worth(), 0.0);
+  }
+}
+
+// The scenario takes both keys' bounds, but no minimum_distance above search_radius.
+TEST_F(SearchTest, ProposesNothingThatTheScenarioRefusesTogether) {
+  request_.options.keys = {"cbv.minimum_distance: 1.0 .. 50.0", "cbv.search_radius: 20.0 .. 60.0",
+                           "target_speed: 5.0 .. 10.0"};
+  const auto cases = casesOf(request_);
+  EXPECT_EQ(cases.size(), request_.budget);
+  for (const SearchCase& one : cases) EXPECT_LT(numberOf(one.set[0]), numberOf(one.set[1]));
+}
+
 TEST_F(SearchTest, WritesFoundScenariosTableAndPage) {
   Search search(request_);
   while (search.advance(results_.path(), runner())) {

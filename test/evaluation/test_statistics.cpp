@@ -43,6 +43,15 @@ TEST(Cells, AverageRepetitionsBeforeSeeds) {
   EXPECT_DOUBLE_EQ(*score.standard_deviation, std::sqrt(50.0));
 }
 
+// 0 % of 900 samples and 100 % of 100.
+TEST(Cells, PoolSharesAsTheirIntervalsDo) {
+  RunRecord low = recordWith({"s", "1"}, 0.0);
+  RunRecord high = recordWith({"s", "2"}, 0.0);
+  low.measures = {{"cbv_off_road_percent", 0.0}, {"cbv_decisions", 900.0}};
+  high.measures = {{"cbv_off_road_percent", 100.0}, {"cbv_decisions", 100.0}};
+  EXPECT_DOUBLE_EQ(*cellsOf({low, high}).front().measures.at("cbv_off_road_percent").mean, 10.0);
+}
+
 TEST(Cells, CountEveryRunWhateverItsOutcome) {
   const std::vector<Cell> cells =
       cellsOf({recordWith({"s", "1"}, 10.0), recordWithout({"s", "2"}, "error"),

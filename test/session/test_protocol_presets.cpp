@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "session/session_request.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::session {
 namespace {

@@ -88,7 +88,7 @@ TEST_F(StoryboardActor, AnOffsetTakesTheTimeOfItsLargestAcceleration) {
   actor_.setSpeed({}, 10.0, std::make_shared<Performance>());
   const auto performing = std::make_shared<Performance>();
   actor_.setOffset(over(Dynamics::Shape::kSinusoidal, Dynamics::Dimension::kAcceleration, 0.3), 1.5,
-                   performing);
+                   false, performing);
   drive(4.9);
   EXPECT_FALSE(performing->over);
   drive(0.1);
@@ -104,6 +104,36 @@ TEST_F(StoryboardActor, AStepThatLastsTakesEffectAtOnce) {
   EXPECT_FALSE(performing->over);
   drive(0.1);
   EXPECT_TRUE(performing->over);  // 3 m at 2 m/s
+}
+
+TEST_F(StoryboardActor, AChangeAtOnceTurnsNobody) {
+  actor_.setSpeed({}, 10.0, std::make_shared<Performance>());
+  actor_.setOffset(over(Dynamics::Shape::kStep, Dynamics::Dimension::kTime, 0.0), 1.0, false,
+                   std::make_shared<Performance>());
+  drive(kStep);
+  EXPECT_NEAR(actor_.reference().pose.position.y(), -4.25, 1e-9);
+  EXPECT_EQ(actor_.reference().pose.heading, 0.0);
+}
+
+TEST_F(StoryboardActor, AnOffsetThatIsKeptDoesNotEnd) {
+  const auto performing = std::make_shared<Performance>();
+  actor_.setOffset(over(Dynamics::Shape::kStep, Dynamics::Dimension::kTime, 0.0), 1.0, true,
+                   performing);
+  drive(1.0);
+  EXPECT_FALSE(performing->over);
+  EXPECT_NEAR(actor_.reference().pose.position.y(), -4.25, 1e-9);
+  performing->stopped = true;
+  drive(kStep);
+  EXPECT_TRUE(performing->over);
+}
+
+TEST_F(StoryboardActor, TheWayToATimedTrajectoryIsNoSpeed) {
+  actor_.follow({{{{110.0, -5.25}, 0.0}, 0.0}, {{{120.0, -5.25}, 0.0}, 0.0}}, {0.0, 2.0},
+                std::make_shared<Performance>());
+  drive(kStep);
+  EXPECT_NEAR(actor_.speed(), 5.0, 1e-9);
+  drive(kStep);
+  EXPECT_NEAR(actor_.speed(), 5.0, 1e-9);
 }
 
 TEST_F(StoryboardActor, ATimedTrajectoryIsMetAtItsTimes) {

@@ -305,6 +305,43 @@ TEST_F(ScenarioReader, CatalogsInACircleAreRefused) {
   expectText(errorIn(scenario("", place, entity)), "in a circle");
 }
 
+// Routes whose eight waypoints are each the next route: 8^7 positions in a few kilobytes.
+TEST_F(ScenarioReader, CatalogsThatMultiplyAreRefused) {
+  std::string routes = R"(<OpenSCENARIO><Catalog name="routes">)";
+  for (int i = 0; i < 7; ++i) {
+    routes += "<Route name=\"r" + std::to_string(i) + "\" closed=\"false\">";
+    for (int k = 0; k < 8; ++k) {
+      routes += R"(<Waypoint routeStrategy="shortest"><Position><RoutePosition><RouteRef>)"
+                R"(<CatalogReference catalogName="routes" entryName="r)" +
+                std::to_string(i + 1) +
+                R"("/></RouteRef><InRoutePosition><FromRoadCoordinates pathS="0" t="0"/>)"
+                R"(</InRoutePosition></RoutePosition></Position></Waypoint>)";
+    }
+    routes += "</Route>";
+  }
+  routes += R"(<Route name="r7" closed="false">)";
+  for (int k = 0; k < 2; ++k)
+    routes += R"(<Waypoint routeStrategy="shortest"><Position><WorldPosition x="0" y="0"/>)"
+              R"(</Position></Waypoint>)";
+  write("catalogs/routes.xosc", routes + "</Route></Catalog></OpenSCENARIO>");
+  const std::string place = R"(<RouteCatalog><Directory path="catalogs"/></RouteCatalog>)";
+  const std::string assign = privateAction(
+      R"(<RoutingAction><AssignRouteAction><CatalogReference catalogName="routes" entryName="r0"/>)"
+      R"(</AssignRouteAction></RoutingAction>)");
+  expectText(errorIn(scenario(assign, place)), "refer to each other more than");
+}
+
+TEST_F(ScenarioReader, ManyParametersAreReadInTheOrderOfTheirDeclaration) {
+  std::string text = core::readFile(scenario(speed("$p9999")), "scenario");
+  std::string declarations;
+  for (int i = 0; i < 10000; ++i)
+    declarations += "<ParameterDeclaration name=\"p" + std::to_string(i) + "\" value=\"" +
+                    (i == 0 ? std::string("3") : "$p" + std::to_string(i - 1)) + "\"/>";
+  text.insert(text.find("</ParameterDeclarations>"), declarations);
+  const Scenario read = readScenario(write("many.xosc", text), false);
+  EXPECT_EQ(std::get<SpeedAction>(read.init[0].action.what).value, 3.0);
+}
+
 TEST_F(ScenarioReader, DocumentTypesAreRefusedWithTheirLine) {
   const std::string file = write("bomb.xosc",
                                  "<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY b "
@@ -443,6 +480,21 @@ TEST_F(ScenarioReader, CarlasCoordinatesAreMirrored) {
   const Position& to = std::get<TeleportAction>(read.init[0].action.what).to;
   EXPECT_EQ(to.point.y(), -2.0);
   EXPECT_EQ(to.heading, -0.5);
+}
+
+// scenario_runner hands the value to a behavior that counts it to the right.
+TEST_F(ScenarioReader, InFilesOfCarlaALaneOffsetIsToTheRight) {
+  const std::string file = scenario(privateAction(
+      "<LateralAction><LaneOffsetAction continuous=\"true\"><LaneOffsetActionDynamics "
+      "maxLateralAcc=\"1\" dynamicsShape=\"linear\"/><LaneOffsetTarget><AbsoluteTargetLaneOffset "
+      "value=\"0.5\"/></LaneOffsetTarget></LaneOffsetAction></LateralAction>"));
+  std::string text = core::readFile(file, "scenario");
+  EXPECT_EQ(std::get<LaneOffsetAction>(readScenario(file, false).init[0].action.what).value, 0.5);
+  text.replace(text.find("description=\"test\""), 18, "description=\"CARLA:test\"");
+  const Scenario read = readScenario(write("carla.xosc", text), false);
+  const auto& offset = std::get<LaneOffsetAction>(read.init[0].action.what);
+  EXPECT_EQ(offset.value, -0.5);
+  EXPECT_TRUE(offset.continuous);
 }
 
 TEST_F(ScenarioReader, TheTableNamesEachElementOnce) {

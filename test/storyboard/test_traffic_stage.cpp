@@ -205,6 +205,67 @@ TEST_F(StoryboardTrafficStage, WhoStandsHasAnEndlessHeadway) {
   EXPECT_TRUE(stage_.holds(condition, time_));
 }
 
+// The car at 120 m, the ego 90 m behind the begin of the car's lanes: 1 m to the right of them.
+TEST_F(StoryboardTrafficStage, WhoIsBehindIsMeasuredAlongTheLanesToo) {
+  begin(placeAt(120.0));
+  traffic::VehicleState state;
+  state.position = {30.0, kMiddle - 1.0};
+  stage_.observe("ego", state, nullptr, kStep);
+  EntityCondition distance;
+  distance.entities = {"car"};
+  distance.other = "ego";
+  distance.measure = Measure::kDistance;
+  distance.rule = Rule::kGreaterOrEqual;
+  distance.lane_frame = true;
+  Condition condition;
+  for (const auto& [along, expected] : {std::pair(EntityCondition::Along::kLongitudinal, 90.0),
+                                        std::pair(EntityCondition::Along::kLateral, 1.0)}) {
+    distance.along = along;
+    distance.value = expected - 0.01;
+    condition.what = distance;
+    EXPECT_TRUE(stage_.holds(condition, time_)) << expected;
+    distance.value = expected + 0.01;
+    condition.what = distance;
+    EXPECT_FALSE(stage_.holds(condition, time_)) << expected;
+  }
+}
+
+// Reference points in the middle of boxes of 4 m: from 20 m to 50 m, 28 m are free.
+TEST_F(StoryboardTrafficStage, TheFreeSpaceToAPlaceIsThatOfTheBox) {
+  begin(placeAt(20.0));
+  EntityCondition distance;
+  distance.entities = {"car"};
+  distance.place = placeAt(50.0).to;
+  distance.measure = Measure::kDistance;
+  distance.rule = Rule::kLess;
+  distance.freespace = true;
+  Condition condition;
+  for (const auto along : {EntityCondition::Along::kStraight, EntityCondition::Along::kLongitudinal}) {
+    distance.along = along;
+    distance.value = 28.01;
+    condition.what = distance;
+    EXPECT_TRUE(stage_.holds(condition, time_));
+    distance.value = 27.99;
+    condition.what = distance;
+    EXPECT_FALSE(stage_.holds(condition, time_));
+  }
+}
+
+TEST_F(StoryboardTrafficStage, ACollisionMayAskForAKind) {
+  observe(10.0, 2.0);
+  begin(placeAt(12.0));
+  EntityCondition touch;
+  touch.entities = {"ego"};
+  touch.measure = Measure::kCollision;
+  Condition condition;
+  for (const auto& [kind, expected] :
+       {std::pair(Entity::Kind::kPedestrian, false), std::pair(Entity::Kind::kVehicle, true)}) {
+    touch.other_kinds = {kind};
+    condition.what = touch;
+    EXPECT_EQ(stage_.holds(condition, time_), expected);
+  }
+}
+
 TEST_F(StoryboardTrafficStage, ADistanceIsKeptWithinTheLimits) {
   driveBehindEgo(10.0, 30.0);
   DistanceAction distance;

@@ -322,6 +322,10 @@ ImportedNetwork importNetwork(const std::string& source) {
   const std::string content = core::readFile(network.source, "network");
   network.source_sha256 = core::sha256(content);
   if (isOpenDrive(network.source.string(), content)) {
+    // netconvert would take it for right-hand traffic.
+    if (content.find("rule=\"LHT\"") != std::string::npos)
+      throw core::InputError("network '" + network.source.string() +
+                             "': a road has rule=\"LHT\"; left-hand traffic is not supported");
     importConverted({"OpenDRIVE", "<OpenDRIVE", convertOpenDrive}, content, network);
     if (withSpeedsOfRoadTypes(content)) {
       network.changes.emplace_back("gave lanes without a limit the one of their road's type");

@@ -387,8 +387,12 @@
     if (message.over) {
       news.over = true;
       part("headline").textContent = "Over";
-      say("The session is over. Its report opens here.", false);
-      location.replace("report.html");
+      if (message.over.report) {
+        say("The session is over. Its report opens here.", false);
+        location.replace("report.html");
+      } else {
+        say("The session is over. It has no report; the result folder holds what it wrote.", true);
+      }
     }
     if (!changed && !document.hidden) requestAnimationFrame(draw);
     changed = changed || !document.hidden;
