@@ -62,6 +62,9 @@ int exitCodeOf(int status);
 /// ProcessStreams::output.
 class ProcessOutput {
  public:
+  /// A child cannot write more than this.
+  static constexpr std::int64_t kMost = std::int64_t{64} << 20;  // [bytes]
+
   ProcessOutput();
   int descriptor() const { return descriptor_.get(); }
   /// The last `most` bytes, or fewer, of what was printed so far.

@@ -67,6 +67,15 @@ TEST(Program, WritesBeyondALimitAreErrorsThatNameIt) {
   EXPECT_EQ(code, 0);
 }
 
+TEST(Program, AChildThatPrintsWithoutEndTakesNoMemoryWithoutEnd) {
+  const ProcessOutput output;
+  GuardedProcess child("/usr/bin/yes", {}, {}, {{}, -1, output.descriptor()});
+  ASSERT_TRUE(child.waitForEnd(300.0));
+  EXPECT_EQ(child.exitCode(), 1);  // write error
+  EXPECT_EQ(output.end(4), "y\ny\n");
+  EXPECT_EQ(output.end(std::size_t{1} << 30).size(), static_cast<std::size_t>(ProcessOutput::kMost));
+}
+
 TEST(Program, AStopSignalBeforeThereIsAnythingToStopEndsItWithAWord) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const ProcessOutput errors;

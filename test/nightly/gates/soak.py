@@ -14,10 +14,11 @@ EGO = Path(__file__).with_name("parts") / "standing_ego.py"
 
 
 def holdings(process):
-    """Resident memory [MB], descriptors and threads of a process."""
+    """Resident memory of its own [MB], descriptors and threads of a process; pages of files come and go as the kernel likes."""
     folder = Path(f"/proc/{process}")
     status = dict(line.split(":", 1) for line in (folder / "status").read_text().splitlines() if ":" in line)
-    return int(status["VmRSS"].split()[0]) / 1024, len(list((folder / "fd").iterdir())), int(status["Threads"])
+    own = sum(int(status[key].split()[0]) for key in ("RssAnon", "RssShmem"))
+    return own / 1024, len(list((folder / "fd").iterdir())), int(status["Threads"])
 
 
 def growth(looks):
