@@ -232,7 +232,8 @@ std::vector<evaluation::PlannedRun> planOf(const std::vector<CollectRequest>& se
     evaluation::PlannedRun run = runOf(request, settings, hasher);
     if (!ids.insert(run.id).second)
       throw core::InputError("session " + run.id + " is there twice (scenario '" +
-                             request.scenario + "'); give every scenario once and a name of its own");
+                             request.scenario +
+                             "'); give every scenario once and a name of its own");
     requireSameSettings(run, request);
     if (!isDone(request, run.id)) plan.push_back(std::move(run));
   }

@@ -136,7 +136,10 @@ void addEgo(const std::string& ego, MatrixOptions& matrix) {
                      ": the matrix combines several ego_planners with variants; expected one of "
                      "the two. Add it to the matrix");
   }
-  matrix.variants.push_back(name + ": ego_planner=" + ego);
+  const bool taken = std::any_of(
+      matrix.variants.begin(), matrix.variants.end(),
+      [&](const std::string& variant) { return variant.substr(0, variant.find(':')) == name; });
+  matrix.variants.push_back((taken ? name + "_added" : name) + ": ego_planner=" + ego);
 }
 
 MatrixOptions matrixOf(const EvaluateArguments& arguments) {

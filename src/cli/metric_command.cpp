@@ -25,7 +25,8 @@ void addMetricCommand(CLI::App& program, int& exit_code) {
   command->callback([metric, file, &exit_code] {
     exit_code = ExitCode::kPassed;
     if (*metric == "definitions") {
-      if (!file->empty()) throw core::InputError("metric definitions takes no file: '" + *file + "'");
+      if (!file->empty())
+        throw core::InputError("metric definitions takes no file: '" + *file + "'");
       std::cout << metrics::measureList();
       return;
     }

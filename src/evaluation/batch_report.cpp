@@ -333,10 +333,10 @@ std::string markdownCell(const TableCell& cell, bool with_interval) {
 }  // namespace
 
 std::string tablesMarkdown(const std::vector<Table>& tables) {
-  const std::string intervals =
-      std::any_of(tables.begin(), tables.end(), anyIntervals)
-          ? "[95 % interval, bootstrap by routes; of events per km exact Poisson, wider where routes differ] "
-          : "";
+  const std::string intervals = std::any_of(tables.begin(), tables.end(), anyIntervals)
+                                    ? "[95 % interval, bootstrap by routes; of events per km exact "
+                                      "Poisson, wider where routes differ] "
+                                    : "";
   std::string text = "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds " +
                      intervals +
                      "(routes, seeds, runs that have the measure). "

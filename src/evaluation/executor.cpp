@@ -91,8 +91,8 @@ bool Executor::staysOrIsCounted(std::size_t index) {
   if (!cause.empty()) {
     if (isChosen(index))
       repeated_[cause].push_back(plan_[index].id);
-    else if (earlier->complete())
-      stale_.insert(index);
+    else if (earlier->complete() && cause != "program changed")
+      stale_.insert(index);  // of another scenario: it must not count
     else
       records_.back() = *earlier;
     return false;

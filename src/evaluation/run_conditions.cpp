@@ -112,9 +112,10 @@ void requireSameScenario(const std::string& name, const ScenarioConditions& a,
     const auto other = b.inputs.find(input);
     const bool absent = mine == a.inputs.end();
     if (absent == (other == b.inputs.end()) && (absent || mine->second == other->second)) continue;
-    throw InputError(sets + " have a scenario '" + name + "' each, but its " + input +
-                     " is not the same file in A and in B (SHA-256 of the records); their figures do "
-                     "not compare. Run one of them again with the other's files");
+    throw InputError(
+        sets + " have a scenario '" + name + "' each, but its " + input +
+        " is not the same file in A and in B (SHA-256 of the records); their figures do "
+        "not compare. Run one of them again with the other's files");
   }
 }
 

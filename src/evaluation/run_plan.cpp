@@ -362,9 +362,9 @@ ChosenLevels chosenLevels(const std::vector<std::string>& texts,
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     const std::string factor = text.substr(0, equals);
-    const std::vector<std::string> levels =
-        equals == std::string::npos ? std::vector<std::string>()
-                                    : core::splitText(text.substr(equals + 1), ',');
+    const std::vector<std::string> levels = equals == std::string::npos
+                                                ? std::vector<std::string>()
+                                                : core::splitText(text.substr(equals + 1), ',');
     if (levels.empty() || std::find(factors.begin(), factors.end(), factor) == factors.end()) {
       throw InputError("--only '" + text + "': expected FACTOR=LEVEL[,LEVEL...] with a factor of " +
                        core::joinText(factors, ", "));

@@ -31,8 +31,9 @@ struct Cell {
   std::size_t failed = 0;   ///< broke
   std::size_t missing = 0;  ///< not run or interrupted
   /// By measure. Repetitions of a seed are averaged first: n counts the seeds that have the
-  /// measure. The mean of a share is that of all samples together. Intervals are exact Poisson of counts and rates (per km), by the bootstrap over seeds
-  /// of bounded measures, Student's over seeds of all others.
+  /// measure. The mean of a share is that of all samples together. Intervals are exact Poisson of
+  /// counts and rates (per km), by the bootstrap over seeds of bounded measures, Student's over
+  /// seeds of all others.
   std::map<std::string, Statistics> measures;
 };
 

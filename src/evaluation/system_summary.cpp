@@ -109,7 +109,8 @@ std::string readingText(const std::vector<System>& systems) {
       " `cdiff report --compare` tests differences and corrects for their number.";
   if (intervals == 0) return "Figures over all routes; counts are events / km = rate." + compare;
   return "Figures over all routes with 95 % intervals: bootstrap clustered on routes; counts are "
-         "events / km = rate with exact Poisson intervals, wider where routes differ. The table holds " +
+         "events / km = rate with exact Poisson intervals, wider where routes differ. The table "
+         "holds " +
          countText(intervals, "interval") + ": about " +
          core::formatFixed(0.05 * static_cast<double>(intervals), 1) +
          " of them are expected to miss." + compare;

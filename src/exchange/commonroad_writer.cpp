@@ -140,7 +140,8 @@ void addProblem(xml_node root, const SceneVehicle& ego, std::size_t id) {
 /// The format's names of maps have letters and digits alone.
 std::string mapName(const std::string& scenario) {
   std::string name = core::fileName(scenario);
-  for (const char* other : {"_", "-", "."}) name = core::joinText(core::splitText(name, *other), "");
+  for (const char* other : {"_", "-", "."})
+    name = core::joinText(core::splitText(name, *other), "");
   return name.empty() ? "Scenario" : name;
 }
 

@@ -84,8 +84,7 @@ session::LoopParts makeParts(const session::SessionSetup& setup, const HandOverD
   parts.cbv_planner = {makeDriver(setup, driver), planners::seesImages(driver.planner)};
   if (parts.ego_planner.sees || parts.cbv_planner.sees)
     parts.cameras.emplace(setup, rigsOf(options, driver));
-  auto own =
-      std::make_unique<HandOverSelector>(setup.makeCbvSelector(), !driver.planner.empty());
+  auto own = std::make_unique<HandOverSelector>(setup.makeCbvSelector(), !driver.planner.empty());
   selector = own.get();
   parts.selector = std::move(own);
   return parts;

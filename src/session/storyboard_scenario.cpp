@@ -146,7 +146,8 @@ void addCriterion(const storyboard::Condition& condition, VerdictOptions& verdic
   const auto* const parameter = std::get_if<storyboard::ParameterCondition>(&condition.what);
   if (parameter == nullptr) return;
   for (const Criterion& criterion : kCriteria) {
-    if (core::lowerCase(condition.name) != criterion.name && core::lowerCase(parameter->name) != criterion.name)
+    if (core::lowerCase(condition.name) != criterion.name &&
+        core::lowerCase(parameter->name) != criterion.name)
       continue;
     const auto limit = criterion.given ? core::parseNumber(parameter->value) : 0.0;
     if (!limit || *limit < 0.0) {

@@ -330,7 +330,8 @@ void Actor::advanceOnTrajectory(double time, double step, double meters) {
   const std::size_t last = course.times.size() - 1;
   // Not that of the way to the course's beginning, or of a step in whose midst the course ends.
   if (course.begun) speed_ = (reference_.pose.position - before).norm() / step;
-  if (!course.begun || next > last) speed_ = next == 0 ? 0.0 : speedBefore(std::min(next, last), course, speed_);
+  if (!course.begun || next > last)
+    speed_ = next == 0 ? 0.0 : speedBefore(std::min(next, last), course, speed_);
   course.begun = true;
   if (next > last) endTrajectory();
 }

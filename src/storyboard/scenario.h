@@ -275,8 +275,8 @@ struct EntityCondition {
   bool all = false;  ///< of them, else any
   Measure measure = Measure::kSpeed;
   Rule rule = Rule::kGreater;
-  double value = 0.0;  ///< [m/s], [m/s^2], [s] or [m]
-  std::string other;   ///< entity; empty: a position, or for collisions anybody
+  double value = 0.0;                     ///< [m/s], [m/s^2], [s] or [m]
+  std::string other;                      ///< entity; empty: a position, or for collisions anybody
   std::vector<Entity::Kind> other_kinds;  ///< collisions with any of these; empty: of any kind
   std::optional<Position> place;
   bool freespace = false;   ///< between boxes, else between reference points

@@ -332,7 +332,8 @@ bool LiveSession::addFrame(NewsCursor& cursor, Json& news) {
     if (cursor.views[slot] == known) continue;
     cursor.views[slot] = known;
     auto shown = pictures_.view(*view);
-    if (!shown.is_null()) news["views"][std::to_string(slot)] = std::move(shown);  // of one long gone
+    if (!shown.is_null())
+      news["views"][std::to_string(slot)] = std::move(shown);  // of one long gone
   }
   return true;
 }

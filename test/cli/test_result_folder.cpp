@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/evaluate_command.h"
-#include "support/processes.h"
 #include "core/output_folder.h"
 #include "core/text.h"
+#include "support/processes.h"
 
 namespace cdiff::evaluation {
 namespace {

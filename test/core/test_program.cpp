@@ -73,7 +73,8 @@ TEST(Program, AChildThatPrintsWithoutEndTakesNoMemoryWithoutEnd) {
   ASSERT_TRUE(child.waitForEnd(300.0));
   EXPECT_EQ(child.exitCode(), 1);  // write error
   EXPECT_EQ(output.end(4), "y\ny\n");
-  EXPECT_EQ(output.end(std::size_t{1} << 30).size(), static_cast<std::size_t>(ProcessOutput::kMost));
+  EXPECT_EQ(output.end(std::size_t{1} << 30).size(),
+            static_cast<std::size_t>(ProcessOutput::kMost));
 }
 
 TEST(Program, AStopSignalBeforeThereIsAnythingToStopEndsItWithAWord) {

@@ -116,15 +116,18 @@ TEST_F(ExecutorTest, RefusesToResumeARunThatHadAnotherName) {
   EXPECT_EQ(execute(runs)[0].status, "completed");
 }
 
-TEST_F(ExecutorTest, AStaleRecordThatIsNotChosenStays) {
+TEST_F(ExecutorTest, WhatIsNotChosenCountsUnlessItsScenarioChanged) {
   std::vector<PlannedRun> runs = test::fakePlan({"good"});
   execute(runs);
   runs[0].inputs = {{"program", "later"}};
   options_.resume = true;
   options_.chosen = [](const PlannedRun&) { return false; };
   options_.repeated = [](const std::string& cause, const auto&) { ADD_FAILURE() << cause; };
-  EXPECT_EQ(execute(runs)[0].status, "not_run");
+  EXPECT_EQ(execute(runs)[0].status, "completed") << "by an earlier program";
   EXPECT_EQ(readRecord(file("good0", "record.json"))->status, "completed");
+  runs[0].scenario_sha256 = core::sha256("changed");
+  EXPECT_EQ(execute(runs)[0].status, "not_run");
+  EXPECT_EQ(readRecord(file("good0", "record.json"))->status, "not_run");
 }
 
 TEST_F(ExecutorTest, TriesAgainWhenAProcessDied) {

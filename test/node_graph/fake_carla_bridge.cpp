@@ -38,7 +38,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using carla_msgs::CarlaEgoVehicleControl;
 
-constexpr double kStep = 0.05;     // [s]
+constexpr double kStep = 0.05;  // [s]
 constexpr double kPi = 3.14159265358979;
 constexpr std::uint32_t kFirstActor = 100;
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPatience = 120.0;  // [s]; only what hangs takes as long
-int count = 0;                      // sessions of this program
+int count = 0;                       // sessions of this program
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

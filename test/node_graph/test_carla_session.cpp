@@ -119,9 +119,9 @@ TEST_F(CarlaSession, NamesAnotherNodeThatCommands) {
 
 // A planner that sees drives nobody by the image of another frame.
 TEST_F(CarlaSession, BrakesWithoutTheImageOfTheFrame) {
-  const std::string log = launchCarla(
-      kEndless,
-      "cbv_planner:=diffusion image_delay:=1 image_timeout:=0.2 set:=\"protocol.time_limit=5 verdict.judge=false\"");
+  const std::string log = launchCarla(kEndless,
+                                      "cbv_planner:=diffusion image_delay:=1 image_timeout:=0.2 "
+                                      "set:=\"protocol.time_limit=5 verdict.judge=false\"");
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
   EXPECT_EQ(summary()["status"], "timed_out") << log;
   EXPECT_GT(summary()["cbv"]["count"], 0) << log;

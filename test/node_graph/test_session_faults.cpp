@@ -99,9 +99,9 @@ TEST_F(SessionFaults, KilledExternalEgoIsNoticedByItsConnection) {
 }
 
 TEST_F(SessionFaults, KilledExternalEgoIsNoticedInLockstep) {
-  ASSERT_NO_FATAL_FAILURE(launchWithExternalEgo(
-      "scenario:=crossing_straight cbv_planner:=pdm_lite set:=\"at_most=1 "
-      "protocol.time_limit=60\""));
+  ASSERT_NO_FATAL_FAILURE(
+      launchWithExternalEgo("scenario:=crossing_straight cbv_planner:=pdm_lite set:=\"at_most=1 "
+                            "protocol.time_limit=60\""));
   ASSERT_TRUE(session_.signal("my_ego", SIGKILL));
   EXPECT_LT(session_.endAfter(100.0), 100.0) << session_.log();
   expectError("the external ego planner");

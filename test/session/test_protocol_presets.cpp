@@ -67,9 +67,7 @@ TEST(ProtocolPresets, UnknownOnesNameTheNearest) {
 /// A scenario file of its own for a test.
 class ProtocolOfAScenario : public testing::Test {
  protected:
-  ProtocolOfAScenario() {
-    request_.scenario = (folder_.path() / "scenario.yaml").string();
-  }
+  ProtocolOfAScenario() { request_.scenario = (folder_.path() / "scenario.yaml").string(); }
   ProtocolOptions resolved(const std::string& protocol) {
     std::ofstream(request_.scenario) << "network: roundabout\nroute: {edges: [a]}\n" << protocol;
     return resolveRequest(request_).protocol;

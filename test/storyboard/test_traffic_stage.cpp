@@ -240,7 +240,8 @@ TEST_F(StoryboardTrafficStage, TheFreeSpaceToAPlaceIsThatOfTheBox) {
   distance.rule = Rule::kLess;
   distance.freespace = true;
   Condition condition;
-  for (const auto along : {EntityCondition::Along::kStraight, EntityCondition::Along::kLongitudinal}) {
+  for (const auto along :
+       {EntityCondition::Along::kStraight, EntityCondition::Along::kLongitudinal}) {
     distance.along = along;
     distance.value = 28.01;
     condition.what = distance;

@@ -110,7 +110,8 @@ std::string settingOf(const json& summary) {
 EgoRun readRun(const fs::path& folder, const fs::path& base) {
   const std::string text = core::readFile(folder / "summary.json", "summary");
   if (readSummary(text, (folder / "summary.json").string()).status == "error")
-    throw core::InputError("'" + folder.string() + "' holds a session with status 'error', which no "
+    throw core::InputError("'" + folder.string() +
+                           "' holds a session with status 'error', which no "
                            "ranking may hold; move it elsewhere");
   const json summary = json::parse(text);
   EgoRun run;

@@ -185,7 +185,8 @@ std::string writeEgoRanking(const std::vector<std::filesystem::path>& folders,
   std::set<std::filesystem::path> given;
   for (const std::filesystem::path& folder : folders) {
     if (!given.insert(std::filesystem::weakly_canonical(folder)).second)
-      throw core::InputError("'" + folder.string() + "' is there twice; its runs would count twice");
+      throw core::InputError("'" + folder.string() +
+                             "' is there twice; its runs would count twice");
     for (EgoRun& run : readEgoRuns(std::filesystem::absolute(folder), base))
       runs.push_back(std::move(run));
   }

@@ -25,7 +25,8 @@ RoadLine drawLine(const std::string& kind, Draws& draws) {
   RoadLine line(Eigen::Vector2d::Zero(), 0.0);
   line.straight(20.0);
   // `side`: 1 to the left, -1 to the right; angles in degrees, radii in m.
-  const auto arc = [&](double radius_low, double radius_high, double side, double low, double high) {
+  const auto arc = [&](double radius_low, double radius_high, double side, double low,
+                       double high) {
     const double angle = side * drawAngle(draws, low, high);
     line.arc(draws.uniform(radius_low, radius_high), angle);
   };
