@@ -56,7 +56,7 @@ void cancelAfter(const std::string& name, const core::InputError& error) {
 }
 
 std::string goOnText(const EngineArguments& arguments, const fs::path& results) {
-  const std::string end = " --results " + results.string() + "\n";
+  const std::string end = " --results " + evaluation::shellWord(results.string()) + "\n";
   return arguments.go_on + end + "to end them: " + arguments.command + " --cancel" + end;
 }
 
@@ -149,7 +149,8 @@ void requireSilent(const fs::path& results, const std::string& id,
                    const core::LeaseHolder& holder) {
   if (!holder.is_alive) return;
   throw core::InputError("run '" + id + "' in '" + results.string() + "' is under way by " +
-                         holder.text + "; wait until it has ended, or end it (--cancel)");
+                         holder.text + "; wait until it has ended, or end it" +
+                         (evaluation::hasJobName(results) ? " (--cancel)" : ""));
 }
 
 /// On another engine than this process. A stop that comes while jobs are submitted takes effect

@@ -3,6 +3,7 @@
 /// The command `cdiff collect`: drives sessions, or reads bags, and makes training samples.
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <set>
@@ -17,6 +18,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/run_plan.h"
+#include "learning/samples/dataset.h"
 #include "learning/samples/scene_file.h"
 #include "node_graph/bags/dataset_from_bag.h"
 #include "suite/seal.h"
@@ -142,11 +144,11 @@ int convertBags(const CollectArguments& arguments) {
   return ExitCode::kPassed;
 }
 
-/// Whether a scene is there and whole; a damaged one is named.
-bool hasScene(const fs::path& file) {
+/// Whether a file is there and whole, as its reader says; a damaged one is named.
+bool isWhole(const fs::path& file, const std::function<void(const fs::path&)>& read) {
   if (!fs::exists(file)) return false;
   try {
-    learning::readScene(file);
+    read(file);
     return true;
   } catch (const core::InputError& error) {
     std::cerr << "cdiff: " << core::plainText(error.what()) << "; its session is driven again\n";
@@ -158,10 +160,12 @@ bool hasScene(const fs::path& file) {
 /// always driven again.
 bool isDone(const CollectRequest& request, const std::string& name) {
   if (!request.images && !request.scenes) return false;
-  const bool samples = fs::exists(collection::shardFile(request, name)) &&
-                       fs::exists(collection::statisticsFile(request, name));
-  const bool scene = !request.scenes || hasScene(collection::sceneFile(request, name));
-  return (samples || !request.images) && scene;
+  const auto shard = [](const fs::path& file) { learning::ShardReader{file}; };
+  const auto statistics = [](const fs::path& file) { collection::readStatistics(file); };
+  const auto scene = [](const fs::path& file) { learning::readScene(file); };
+  return (!request.images || (isWhole(collection::shardFile(request, name), shard) &&
+                              isWhole(collection::statisticsFile(request, name), statistics))) &&
+         (!request.scenes || isWhole(collection::sceneFile(request, name), scene));
 }
 
 /// The run of one session. Its files lie in the folders of the data set.

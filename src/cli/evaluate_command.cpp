@@ -306,6 +306,7 @@ int evaluate(const EvaluateArguments& arguments) {
     cancelEngine(arguments.results);
     return ExitCode::kPassed;
   }
+  if (arguments.results.empty()) throw InputError("--results is empty; expected a folder");
   requireEngine(arguments.engine);
   const MatrixOptions matrix = matrixOf(arguments);
   const fs::path results = fs::absolute(arguments.results);

@@ -102,7 +102,8 @@ int exitCodeOf(const evaluation::Search& search, const SearchArguments& argument
   const bool broke = std::any_of(cases.begin(), cases.end(), [](const auto& one) {
     return one.record.failed() || one.careful_broke;
   });
-  const bool cut = cases.size() < arguments.request.budget && !arguments.engine.prints();
+  const bool cut = cases.size() < arguments.request.budget && !arguments.engine.prints() &&
+                   !search.isExhausted();
   return broke || cut ? ExitCode::kRunTimeError : ExitCode::kPassed;
 }
 
@@ -144,6 +145,8 @@ int searchScenario(const SearchArguments& arguments) {
   evaluation::writeSearchFiles(search, request, results);
   std::cout << evaluation::searchText(search.cases(), search.asksCarefulDriver()) << "\n"
             << std::flush;
+  if (search.isExhausted())
+    std::cerr << "the space has no further case than these " << search.cases().size() << "\n";
   std::cerr << "report: " << (results / "index.html").string() << "\n";
   return exitCodeOf(search, arguments);
 }

@@ -69,7 +69,7 @@ void addWorkerCommand(CLI::App& program, int& exit_code) {
                    "Time without a sign of a worker of another host after which its run is taken "
                    "over [s]")
       ->capture_default_str()
-      ->check(CLI::Range(1.0, 86400.0));
+      ->check(CLI::Range(3.0 * core::LeaseTerms().beat, 86400.0));
   command->add_flag("--wait", arguments->wait,
                     "Wait for runs that other workers have, and take over what they leave behind");
   command->footer(

@@ -14,6 +14,8 @@
 #include "core/folder_access.h"
 #include "core/holder.h"
 #include "core/host.h"
+#include "core/program.h"
+#include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {
 namespace {
@@ -28,9 +30,21 @@ std::string beatText(std::size_t number) {
   return std::string(kBeatDigits - std::min(kBeatDigits, digits.size()), '0') + digits + "\n";
 }
 
+/// Invalid where the file has gone. Another user's may be for reading alone. Throws InputError for
+/// what is no file that we can read: nobody could say whether its holder lives.
 FileDescriptor openLease(const fs::path& file) {
-  constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  return FileDescriptor(::open(file.c_str(), kFlags));
+  constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  FileDescriptor descriptor(::open(file.c_str(), kFlags | O_RDWR));
+  if (!descriptor && (errno == EACCES || errno == EROFS))
+    descriptor = FileDescriptor(::open(file.c_str(), kFlags | O_RDONLY));
+  const int reason = errno;
+  if (!descriptor && (reason == ENOENT || reason == ESTALE)) return descriptor;
+  struct stat status {};
+  if (descriptor && ::fstat(descriptor.get(), &status) == 0 && S_ISREG(status.st_mode))
+    return descriptor;
+  throw InputError("'" + file.string() + "' is no lease that can be read (" +
+                   (descriptor ? std::string("no regular file") : writeErrorText(reason)) +
+                   "); remove it where nobody works on its run");
 }
 
 /// Whether a process of this host has signed the lease; one that is gone counts as such.
@@ -95,9 +109,10 @@ bool LeaseFolder::isLeftBehind(const fs::path& file) {
   if (!descriptor) return false;  // released just now
   const auto facts = holderFacts(descriptor.get());
   if (isOfThisHost(facts)) return ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0;
-  Seen& seen = seen_[file.filename().string()];
   const auto now = std::chrono::steady_clock::now();
-  if (seen.facts != facts) seen = {facts, now, !seen.facts.empty()};
+  const auto [place, added] = seen_.try_emplace(file.filename().string(), Seen{facts, now, false});
+  Seen& seen = place->second;
+  if (seen.facts != facts) seen = {facts, now, true};
   return std::chrono::duration<double>(now - seen.since).count() > terms_.expiry;
 }
 

@@ -86,8 +86,12 @@ bool Executor::staysOrIsCounted(std::size_t index) {
   if (!earlier) return false;
   std::string cause = causeToRepeat(*earlier, plan_[index]);
   const std::string& result = plan_[index].command.result;
-  if (cause.empty() && !result.empty() && !fs::is_regular_file(folderOf(index) / result))
-    cause = result + " missing";
+  std::vector<std::string> needed;
+  if (!result.empty()) needed.push_back(result);
+  if (plan_[index].command.isSession()) needed.emplace_back("trace.csv");
+  for (const std::string& file : needed) {
+    if (cause.empty() && !fs::is_regular_file(folderOf(index) / file)) cause = file + " missing";
+  }
   if (!cause.empty()) {
     if (isChosen(index))
       repeated_[cause].push_back(plan_[index].id);
@@ -137,7 +141,9 @@ std::vector<RunRecord> Executor::collect() {
   for (const std::size_t index : now_) {
     const auto ended = ended_.find(plan_[index].id);
     if (ended != ended_.end()) {
+      const Factors factors = records_[index].factors;
       records_[index] = ended->second;
+      records_[index].factors = factors;  // one without a record has none
     } else if (const auto record = readRecord(folderOf(index) / kRecordFile)) {
       records_[index] = *record;
     }

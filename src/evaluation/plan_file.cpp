@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/host.h"
 #include "core/output_folder.h"
+#include "core/text.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/run_plan.h"
@@ -34,6 +35,29 @@ void writePlan(const fs::path& results, const PlanFile& plan) {
   core::writeOwnFile(results / PlanFile::kName, json.dump(1) + "\n");
 }
 
+namespace {
+
+/// Throws InputError for values that no command plans.
+void requireUsable(const PlanFile& plan, int version, const fs::path& file) {
+  constexpr int kMostRetries = 1000;
+  const auto is_name = [](const std::string& id) {
+    return !id.empty() && id != "." && id != ".." && id.find('/') == std::string::npos;
+  };
+  std::string wrong;
+  if (version != 1) wrong = "schema_version is " + std::to_string(version) + "; expected 1";
+  if (!(plan.timeout > 0.0)) wrong = "timeout is not above 0";
+  if (plan.retries < 0 || plan.retries > kMostRetries) wrong = "retries are not 0 to 1000";
+  for (const std::string& id : plan.ids) {
+    if (!is_name(id)) wrong = "'" + core::shortened(id) + "' is no name of a run";
+  }
+  if (wrong.empty()) return;
+  throw core::InputError("'" + file.string() + "' is no plan of a batch: " + wrong +
+                         "; write it again with the command that planned it (cdiff evaluate: with "
+                         "--resume)");
+}
+
+}  // namespace
+
 PlanFile readPlan(const fs::path& results) {
   const fs::path file = results / PlanFile::kName;
   if (!core::isFile(file)) {
@@ -49,6 +73,7 @@ PlanFile readPlan(const fs::path& results) {
     plan.retries = json.at("retries");
     plan.fresh = json.at("fresh");
     plan.ids = json.at("runs").get<std::vector<std::string>>();
+    requireUsable(plan, json.at("schema_version"), file);
     return plan;
   } catch (const nlohmann::json::exception& error) {
     throw core::InputError(

@@ -136,6 +136,20 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// Throws InputError for a word that no run ends with.
+std::string statusIn(const Json& json) {
+  using traffic::SessionStatus;
+  const std::string status = json.at("status");
+  for (const auto known :
+       {SessionStatus::kCompleted, SessionStatus::kBlocked, SessionStatus::kDeviated,
+        SessionStatus::kTimedOut, SessionStatus::kCollided, SessionStatus::kInterrupted,
+        SessionStatus::kError}) {
+    if (status == traffic::toText(known)) return status;
+  }
+  if (status == RunRecord().status) return status;
+  throw core::InputError("'" + core::shortened(status) + "' is no status of a run");
+}
+
 RunRecord fromJson(const Json& json) {
   RunRecord record;
   record.id = json.at("id");
@@ -150,7 +164,7 @@ RunRecord fromJson(const Json& json) {
     json.at("command").at("words").at(0);  // none is damage
     record.command = {json.at("command").at("words"), json.at("command").at("result")};
   }
-  record.status = json.at("status");
+  record.status = statusIn(json);
   record.cause = json.at("cause");
   record.exit_code = json.at("exit_code");
   record.attempts = json.at("attempts");
@@ -217,12 +231,19 @@ std::string recordJson(const RunRecord& record) {
 
 std::optional<RunRecord> readRecord(const fs::path& file) {
   if (!fs::exists(file)) return std::nullopt;
-  try {
-    return fromJson(Json::parse(core::readFile(file, "record")));
-  } catch (const Json::exception& error) {
+  const std::string text = core::readFile(file, "record");
+  const auto fail = [&file](const std::exception& error) {
     throw core::InputError("'" + file.string() + "' is no record of a run: " + error.what() +
                            "; delete the file to have the run repeated");
+  };
+  try {
+    return fromJson(Json::parse(text));
+  } catch (const Json::exception& error) {
+    fail(error);
+  } catch (const core::InputError& error) {
+    fail(error);
   }
+  return std::nullopt;
 }
 
 std::vector<RunRecord> readRecords(const fs::path& results) {

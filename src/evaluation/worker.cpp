@@ -186,9 +186,13 @@ class Worker {
 
   RunRecord recordAt(std::size_t index) const {
     const fs::path file = folderOf(index) / kRecordFile;
-    if (auto record = readRecord(file)) return *record;
-    throw core::InputError("'" + file.string() + "' is missing, but the run is planned" +
-                           kPlanAgain);
+    const auto record = readRecord(file);
+    if (!record)
+      throw core::InputError("'" + file.string() + "' is missing, but the run is planned" +
+                             kPlanAgain);
+    if (record->id == ids_[index]) return *record;
+    throw core::InputError("'" + file.string() + "' is the record of run '" +
+                           core::shortened(record->id) + "'" + kPlanAgain);
   }
   /// Whether it needs nothing any more; then it is announced.
   bool isDone(const RunRecord& record) const {
@@ -229,8 +233,33 @@ class Worker {
     return isDone(*seen);
   }
 
-  /// Whether the run is ours to do now. What another worker has waits in `taken_`.
+  /// Its folder may be gone; then the lease would make another one in its place.
+  void requireResults() const {
+    if (core::isFolder(options_.results / "runs")) return;
+    throw core::InputError("'" + options_.results.string() +
+                           "' was moved or removed while its runs were under way; go on with it "
+                           "where it is now");
+  }
+
+  /// A run whose record is missing, damaged or another's cannot be done; the others go on.
   bool claim(std::size_t index) {
+    requireResults();
+    try {
+      return claimRecorded(index);
+    } catch (const core::InputError& error) {
+      requireResults();
+      RunRecord record;
+      record.id = ids_[index];
+      record.status = "error";
+      record.cause = core::plainText(error.what());
+      record.exit_code = ExitCode::kBadInput;
+      if (options_.ended) options_.ended(record);
+      return false;
+    }
+  }
+
+  /// Whether the run is ours to do now. What another worker has waits in `taken_`.
+  bool claimRecorded(std::size_t index) {
     if (looksDone(index)) return false;
     std::shared_ptr<const core::Lease> lease = leases_.claim(ids_[index]);
     if (!lease) {

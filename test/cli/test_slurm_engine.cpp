@@ -304,6 +304,46 @@ TEST_F(PlayedSlurm, EndsAJobThatWasTakenThoughItsSubmissionFailed) {
   EXPECT_FALSE(fs::exists(folder("queued"))) << output();
 }
 
+// A word of the site on any stream is neither a task nor the id of a job.
+TEST_F(PlayedSlurm, TakesNoWarningForATask) {
+  play("sbatch", "touch $D/asked\necho 7\necho 'sbatch: warning: be quick' >&2");
+  play("squeue", "echo 'squeue: warning: maintenance soon' >&2\n[ ! -e $D/queued ] || echo 7_0");
+  const std::vector<std::string> words = {"evaluate", "smoke", "--results", folder("results")};
+  std::vector<std::string> all = words;
+  all.insert(all.end(), {"--engine", "slurm", "--slurm", "poll=0.1"});
+  EXPECT_EQ(cdiff(all), 2) << output();  // the job has ended, and did nothing
+  expectOutput("submitted 7 as cdiff-");
+  expectOutput("their jobs ended before");
+}
+
+TEST_F(PlayedSlurm, ACopyOfABatchHasNoJobs) {
+  play("sbatch", "touch $D/queued\necho 7");
+  const std::string results = folder("results");
+  {
+    test::ProgramRun driver(
+        CDIFF_PROGRAM,
+        {"evaluate", "smoke", "--results", results, "--engine", "slurm", "--slurm", "poll=0.1"},
+        folder("output"));
+    while (!fs::exists(folder("queued"))) ASSERT_FALSE(driver.waitForEnd(0.01)) << output();
+    driver.signal(SIGINT);
+    EXPECT_EQ(driver.wait(), 130) << output();
+  }
+  fs::copy(results, folder("copy"), fs::copy_options::recursive);
+  EXPECT_EQ(cdiff({"evaluate", "--results", folder("copy"), "--cancel"}), 3);
+  expectOutput("is a copy");
+  EXPECT_TRUE(fs::exists(folder("queued")));
+  EXPECT_EQ(cdiff({"evaluate", "--results", results, "--cancel"}), 0) << output();
+  EXPECT_FALSE(fs::exists(folder("queued")));
+}
+
+TEST_F(PlayedSlurm, RefusesAnArraySizeThatIsNone) {
+  for (const char* size : {"0", "1e30", "many"}) {
+    play("scontrol", std::string("echo 'MaxArraySize = ") + size + "'");
+    EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("results"), "--engine", "slurm"}), 3);
+    expectOutput(std::string("MaxArraySize is ") + size);
+  }
+}
+
 class WithoutSlurm : public test::EvaluateCommand {};
 
 TEST_F(WithoutSlurm, NamesTheProgramThatIsMissing) {
@@ -331,11 +371,20 @@ TEST_F(WithoutSlurm, PrintsTheJobsAndSubmitsNothing) {
   EXPECT_FALSE(fs::exists(results / "engine.json"));
 }
 
+TEST_F(WithoutSlurm, NamesItsLogsInAnyFolder) {
+  ASSERT_EQ(cdiff({"evaluate", "smoke", "--results", folder("50%j"), "--engine", "print"}), 0);
+  expectOutput("/50%%j/slurm/%A_%a.log");
+  EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("a\\b"), "--engine", "print"}), 3);
+  expectOutput("backslash");
+}
+
 TEST_F(WithoutSlurm, RefusesWrongOptions) {
   for (const auto& [option, expected] :
        std::vector<std::pair<std::string, std::string>>{{"partitoin=x", "'partition'"},
                                                         {"runs_per_task=0", "runs_per_task"},
                                                         {"nothing.yaml", "nothing.yaml"},
+                                                        {"extra_args=[--job-name=a]", "extra_args"},
+                                                        {"extra_args=[-Ja]", "extra_args"},
                                                         {"account=\"a\\nb\"", "line break"}}) {
     EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("results"), "--engine", "print",
                      "--slurm", option}),

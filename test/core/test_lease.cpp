@@ -186,6 +186,23 @@ TEST_F(LeaseTest, OfAFolderThatVanishesIsLostAndIsClaimedAnew) {
   EXPECT_TRUE(fs::exists(file("b.1")));
 }
 
+// Nobody could say whether its holder lives: waiting for it would never end.
+TEST_F(LeaseTest, ThatCannotBeReadIsNamed) {
+  fs::create_directories(file("folder.2"));
+  fs::create_symlink("nowhere", file("link.1"));
+  LeaseFolder mine = leases();
+  EXPECT_THROW(mine.claim("folder"), InputError);
+  EXPECT_THROW(mine.claim("link"), InputError);
+  EXPECT_THROW(mine.holders(), InputError);
+  EXPECT_NE(mine.claim("a"), nullptr);
+}
+
+TEST_F(LeaseTest, WithoutContentIsLeftBehindOnlyOnceItStaysSo) {
+  fs::create_directories(folder_);
+  std::ofstream(file("a.1").string()) << "";
+  EXPECT_EQ(leases(60.0, 60.0).claim("a"), nullptr);
+}
+
 TEST_F(LeaseTest, SaysThatItsFolderCannotBeWritten) {
   std::ofstream(folder_.string()) << "a file";
   LeaseFolder mine = leases();

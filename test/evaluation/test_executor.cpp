@@ -116,6 +116,18 @@ TEST_F(ExecutorTest, RefusesToResumeARunThatHadAnotherName) {
   EXPECT_EQ(execute(runs)[0].status, "completed");
 }
 
+TEST_F(ExecutorTest, RunsAgainWhatHasLostItsTrace) {
+  const auto runs = test::fakePlan({"good"});
+  execute(runs);
+  fs::remove(file("good0", "trace.csv"));
+  options_.resume = true;
+  std::string cause;
+  options_.repeated = [&](const std::string& why, const auto&) { cause = why; };
+  EXPECT_EQ(execute(runs)[0].status, "completed");
+  EXPECT_EQ(cause, "trace.csv missing");
+  EXPECT_TRUE(fs::exists(file("good0", "trace.csv")));
+}
+
 TEST_F(ExecutorTest, WhatIsNotChosenCountsUnlessItsScenarioChanged) {
   std::vector<PlannedRun> runs = test::fakePlan({"good"});
   execute(runs);

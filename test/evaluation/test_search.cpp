@@ -148,10 +148,15 @@ TEST_F(SearchTest, ProposesNoCaseTwice) {
   for (const SearchCase& one : casesOf(request_)) EXPECT_TRUE(seen.insert(one.set).second);
   EXPECT_EQ(seen.size(), request_.budget);
   request_.options.keys = {"max_cbv: 1 .. 4"};
-  request_.budget = 4;
+  request_.budget = 9;  // more than the space has
   std::set<double> values;
   for (const SearchCase& one : casesOf(request_)) values.insert(numberOf(one.set.front()));
   EXPECT_EQ(values, (std::set<double>{1.0, 2.0, 3.0, 4.0})) << "all that the space has";
+  Search search(request_);
+  while (search.advance(results_.path(), runner())) {
+  }
+  EXPECT_EQ(search.cases().size(), 4U) << "none twice";
+  EXPECT_TRUE(search.isExhausted());
 }
 
 TEST_F(SearchTest, IsTheBeginningOfALongerSearchOfTheSameSeedAlone) {

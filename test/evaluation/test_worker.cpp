@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <map>
 #include <thread>
 
 #include "core/output_folder.h"
@@ -231,6 +232,47 @@ TEST_F(WorkerTest, RefusesAFolderWithoutPlanAndADamagedPlan) {
   EXPECT_THROW(readPlan(scratch_.path() / "nothing"), core::InputError);
   std::ofstream(scratch_.path() / PlanFile::kName) << R"({"schema_version": 1})";
   EXPECT_THROW(readPlan(scratch_.path()), core::InputError);
+  const auto reads = [&](const std::string& version, double timeout, int retries,
+                         const std::string& id) {
+    announce({"good"});
+    PlanFile plan = readPlan(scratch_.path());
+    plan.timeout = timeout;
+    plan.retries = retries;
+    plan.ids = {id};
+    writePlan(scratch_.path(), plan);
+    const fs::path file = scratch_.path() / PlanFile::kName;
+    std::string text = core::readFile(file, "plan");
+    text.replace(text.find("1,"), 1, version);
+    core::writeFileAtomically(file, text);
+    readPlan(scratch_.path());
+  };
+  EXPECT_NO_THROW(reads("1", 1.0, 0, "a"));
+  EXPECT_THROW(reads("2", 1.0, 0, "a"), core::InputError);
+  EXPECT_THROW(reads("1", -1.0, 0, "a"), core::InputError);
+  EXPECT_THROW(reads("1", 1.0, -1, "a"), core::InputError);
+  for (const char* id : {"../a", "..", ""})
+    EXPECT_THROW(reads("1", 1.0, 0, id), core::InputError) << id;
+}
+
+TEST_F(WorkerTest, ARunWithoutAUsableRecordIsNamedAndTheOthersAreDone) {
+  announce({"good", "good", "good", "good", "good"});
+  fs::remove(file("good0", "record.json"));
+  core::writeFileAtomically(file("good1", "record.json"), "{\"schema_vers");
+  std::string text = core::readFile(file("good2", "record.json"), "record");
+  text.replace(text.find("not_run"), 7, "bananas");
+  core::writeFileAtomically(file("good2", "record.json"), text);
+  core::writeFileAtomically(file("good3", "record.json"),
+                            core::readFile(file("good4", "record.json"), "record"));
+  std::map<std::string, std::string> causes;
+  options_.ended = [&](const RunRecord& one) { causes[one.id] = one.cause; };
+  work();
+  EXPECT_EQ(causes.size(), 5U);
+  EXPECT_NE(causes["good0"].find("is missing"), std::string::npos);
+  EXPECT_NE(causes["good1"].find("is no record of a run"), std::string::npos);
+  EXPECT_NE(causes["good2"].find("'bananas' is no status"), std::string::npos);
+  EXPECT_NE(causes["good3"].find("is the record of run 'good4'"), std::string::npos);
+  EXPECT_EQ(record("good4").status, "completed");
+  EXPECT_TRUE(fs::is_empty(leaseFolder(options_.results)));
 }
 
 TEST_F(WorkerTest, EndsTheRunsWhoseScenarioIsNotWhatWasPlannedAndDoesTheOthers) {

@@ -88,29 +88,29 @@ bool Search::isThere(const std::vector<std::string>& set,
          std::any_of(others.begin(), others.end(), same);
 }
 
-/// A proposal that was there before is replaced by another one, as far as the space has any; so is
-/// one whose values the scenario refuses together. Throws InputError where it refuses all.
-void Search::propose(std::size_t number, const std::vector<RatedPoint>& rated,
+/// A proposal that was there before, or whose values the scenario refuses together, is replaced by
+/// another one. False where the space seems to have no other. Throws InputError where the scenario
+/// refuses all.
+bool Search::propose(std::size_t number, const std::vector<RatedPoint>& rated,
                      const std::vector<SearchCase>& others, SearchCase& next) const {
-  constexpr std::size_t kMostAttempts = 50;
+  constexpr std::size_t kMostAttempts = 200;
+  bool allowed = false;
   std::string refused;
   for (std::size_t attempt = 0; attempt < kMostAttempts; ++attempt) {
-    const SearchPoint point = proposal_.point(number, rated, attempt);
-    const std::vector<std::string> set = space_.assignments(point);
-    if (isThere(set, others) && !next.set.empty()) continue;
-    const std::string error = refusalOf(request_, set);
-    if (!error.empty()) {
+    next.point = proposal_.point(number, rated, attempt);
+    next.set = space_.assignments(next.point);
+    const bool known = isThere(next.set, others);
+    const std::string error = known ? "" : refusalOf(request_, next.set);
+    if (!known && error.empty()) return true;
+    if (error.empty())
+      allowed = true;
+    else
       refused = error;
-      continue;
-    }
-    next.point = point;
-    next.set = set;
-    if (!isThere(set, others)) return;
   }
-  if (next.set.empty())
-    throw core::InputError(request_.options_source + ": the scenario refuses each of " +
-                           std::to_string(kMostAttempts) +
-                           " cases, though it takes the values one by one: " + refused);
+  if (allowed || refused.empty()) return false;
+  throw core::InputError(request_.options_source + ": the scenario refuses each of " +
+                         std::to_string(kMostAttempts) +
+                         " cases, though it takes the values one by one: " + refused);
 }
 
 std::vector<SearchCase> Search::proposed() const {
@@ -122,7 +122,7 @@ std::vector<SearchCase> Search::proposed() const {
   for (std::size_t number = cases_.size(); number < end; ++number) {
     SearchCase next;
     next.id = caseId(number);
-    propose(number, rated, batch, next);
+    if (!propose(number, rated, batch, next)) break;
     batch.push_back(next);
   }
   return batch;

@@ -71,12 +71,14 @@ class Search {
   /// Plans the next batch, runs it and rates its cases. Gives false, and changes nothing, once the
   /// budget is spent or where a session of the batch was not run or was interrupted.
   bool advance(const std::filesystem::path& results, const Runner& run);
+  /// Whether the budget is not spent, but the space has no further case.
+  bool isExhausted() const { return cases_.size() < request_.budget && proposed().empty(); }
   /// Those of all batches so far, in their order.
   const std::vector<SearchCase>& cases() const { return cases_; }
 
  private:
   std::vector<SearchCase> proposed() const;
-  void propose(std::size_t number, const std::vector<RatedPoint>& rated,
+  bool propose(std::size_t number, const std::vector<RatedPoint>& rated,
                const std::vector<SearchCase>& others, SearchCase& next) const;
   bool isThere(const std::vector<std::string>& set, const std::vector<SearchCase>& others) const;
   std::vector<PlannedRun> planned(const std::vector<SearchCase>& batch, bool careful) const;

@@ -3,11 +3,33 @@
 #include "evaluation/slurm/slurm_options.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::evaluation {
+
+namespace {
+
+/// What the engine sets itself, by which it finds and follows its jobs.
+void requireNotOurs(const std::string& argument) {
+  constexpr const char* kOurs[] = {
+      "--array",    "--job-name", "--output",    "--error", "--export",  "--open-mode", "--signal",
+      "--parsable", "--wait",     "--test-only", "--wrap",  "--requeue", "--no-requeue"};
+  constexpr const char* kLetters[] = {"-a", "-J", "-o", "-e", "-W"};
+  const std::string name = argument.substr(0, argument.find_first_of("= "));
+  const auto is = [&](const char* ours) { return name == ours; };
+  const auto begins = [&](const char* letter) { return argument.rfind(letter, 0) == 0; };
+  if (std::none_of(std::begin(kOurs), std::end(kOurs), is) &&
+      std::none_of(std::begin(kLetters), std::end(kLetters), begins))
+    return;
+  throw core::InputError("--slurm: extra_args holds '" + core::shortened(argument) +
+                         "', which the engine sets itself");
+}
+
+}  // namespace
 
 void SlurmOptions::describe(core::OptionsVisitor& visitor) {
   constexpr std::int64_t kMost = 1000000;
@@ -36,6 +58,7 @@ void SlurmOptions::validate() const {
           "--slurm: a value holds a line break or another control character; "
           "expected one line each");
   }
+  for (const std::string& argument : extra_args) requireNotOurs(argument);
 }
 
 SlurmOptions slurmOptionsOf(const std::vector<std::string>& texts) {

@@ -38,6 +38,12 @@ Answer ask(const std::string& command, const std::vector<std::string>& arguments
   return {ended && process.exitCode() == 0, text};
 }
 
+/// Whether a line is the id of a job or of tasks of one ("12", "12_3", "12_[0-3%2]"), and none of
+/// the words that sites and Slurm add.
+bool isJobId(const std::string& line) {
+  return !line.empty() && line.find_first_not_of("0123456789_[]-,%") == std::string::npos;
+}
+
 Answer require(const std::string& command, const std::vector<std::string>& arguments) {
   Answer answer = ask(command, arguments);
   if (answer.succeeded) return answer;
@@ -54,47 +60,81 @@ std::size_t requireSlurm() {
        core::splitText(require("scontrol", {"show", "config"}).text, '\n')) {
     if (line.rfind("MaxArraySize", 0) != 0) continue;
     const std::string value = line.substr(line.find_last_of("= ") + 1);
+    constexpr double kMost = 1e9;
     const auto size = core::parseNumber(value);
-    if (size && *size >= 1.0) return static_cast<std::size_t>(*size);
-    throw core::InputError("this cluster allows no job arrays (MaxArraySize is " + value + ")");
+    if (size && *size >= 1.0 && *size <= kMost) return static_cast<std::size_t>(*size);
+    throw core::InputError("this cluster allows no job arrays (MaxArraySize is " +
+                           core::shortened(value) + ")");
   }
   throw core::InputError("scontrol show config names no MaxArraySize; is this Slurm?");
 }
 
 std::string submitJob(const std::vector<std::string>& arguments) {
   const std::string text = require("sbatch", arguments).text;
-  const std::string line = text.substr(text.rfind('\n') + 1);  // below any word of the site
-  const std::string id = line.substr(0, line.find(';'));
-  if (!id.empty() && id.find_first_not_of("0123456789") == std::string::npos) return id;
-  throw core::InputError("sbatch gave no job id but '" + line + "'");
+  const std::vector<std::string> lines = core::splitText(text, '\n');
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+    const std::string id = line->substr(0, line->find(';'));
+    if (isJobId(id)) return id;
+  }
+  throw core::InputError("sbatch gave no job id but '" + core::shortened(text) + "'");
 }
 
 std::optional<std::size_t> queuedTasks(const std::string& job_name) {
   const Answer answer =
       ask("squeue", {"--me", "--noheader", "--array", "--format=%i", "--name=" + job_name});
   if (!answer.succeeded) return std::nullopt;
-  return answer.text.empty() ? 0 : core::splitText(answer.text, '\n').size();
+  const std::vector<std::string> lines = core::splitText(answer.text, '\n');
+  return static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), isJobId));
 }
 
 void cancelJobs(const std::string& job_name) { require("scancel", {"--me", "--name=" + job_name}); }
 
 void writeJobName(const fs::path& results, const std::string& job_name,
                   const std::vector<std::string>& ids) {
-  const nlohmann::ordered_json json = {
-      {"schema_version", 1}, {"engine", "slurm"}, {"job_name", job_name}, {"jobs", ids}};
+  const nlohmann::ordered_json json = {{"schema_version", 1},
+                                       {"engine", "slurm"},
+                                       {"results", fs::weakly_canonical(results).string()},
+                                       {"job_name", job_name},
+                                       {"jobs", ids}};
   core::writeOwnFile(results / kEngineFile, json.dump(2) + "\n");
 }
 
-bool hasJobName(const fs::path& results) { return core::isFile(results / kEngineFile); }
+namespace {
+
+/// Throws json::exception for a file that is none of ours.
+nlohmann::json engineIn(const fs::path& results) {
+  return nlohmann::json::parse(core::readFile(results / kEngineFile, "engine"));
+}
+
+/// Whether the jobs work on another folder, of which this one is a copy.
+bool isCopy(const nlohmann::json& engine, const fs::path& results) {
+  const std::string here = fs::weakly_canonical(results).string();
+  return engine.value("results", here) != here;
+}
+
+}  // namespace
+
+bool hasJobName(const fs::path& results) {
+  if (!core::isFile(results / kEngineFile)) return false;
+  try {
+    return !isCopy(engineIn(results), results);
+  } catch (const nlohmann::json::exception&) {
+    return true;  // readJobName() says what is wrong
+  }
+}
 
 std::string readJobName(const fs::path& results) {
   const fs::path file = results / kEngineFile;
-  if (!hasJobName(results)) {
+  if (!core::isFile(file)) {
     throw core::InputError("'" + results.string() + "' has no " + kEngineFile +
                            "; expected the results of a cdiff evaluate --engine slurm");
   }
   try {
-    return nlohmann::json::parse(core::readFile(file, "engine")).at("job_name");
+    const nlohmann::json engine = engineIn(results);
+    if (isCopy(engine, results))
+      throw core::InputError("'" + results.string() + "' is a copy: its jobs work on '" +
+                             engine.at("results").get<std::string>() + "'");
+    return engine.at("job_name");
   } catch (const nlohmann::json::exception& error) {
     throw core::InputError("'" + file.string() + "' names no jobs: " + error.what());
   }

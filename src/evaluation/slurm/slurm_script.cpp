@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "e2e_cdiff/core/exceptions.h"
+
 namespace cdiff::evaluation {
 namespace {
 
@@ -16,6 +18,18 @@ constexpr const char* kVariables[] = {
     "LD_LIBRARY_PATH",  "CMAKE_PREFIX_PATH",  "E2E_CDIFF_PLUGINS"};
 /// Time between the signal and the end of a task [s].
 constexpr int kNotice = 60;
+
+/// The logs of the tasks, by job and task. Throws InputError for a folder with a backslash, with
+/// which Slurm replaces nothing.
+std::string logPattern(const std::filesystem::path& folder) {
+  std::string pattern;
+  for (const char sign : folder.string()) pattern += sign == '%' ? "%%" : std::string(1, sign);
+  if (pattern.find('\\') != std::string::npos)
+    throw core::InputError("'" + folder.string() +
+                           "' has a backslash, with which Slurm names no logs; give another "
+                           "--results");
+  return pattern + "/%A_%a.log";
+}
 
 std::size_t taskCount(const SlurmBatch& batch, const SlurmOptions& options) {
   const auto each = static_cast<std::size_t>(options.runs_per_task);
@@ -53,7 +67,7 @@ std::vector<std::vector<std::string>> sbatchArguments(const SlurmBatch& batch,
   const std::filesystem::path folder = slurmFolder(batch.results);
   std::vector<std::string> common = {"--parsable",
                                      "--job-name=" + batch.name,
-                                     "--output=" + (folder / "%A_%a.log").string(),
+                                     "--output=" + logPattern(folder),
                                      "--open-mode=append",
                                      "--requeue",
                                      "--signal=B:TERM@" + std::to_string(kNotice),
