@@ -6,6 +6,8 @@
 
 #include "cli/commands.h"
 #include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "map/import/network_import.h"
 #include "map/lane_graph.h"
@@ -15,6 +17,8 @@ namespace cdiff::cli {
 namespace {
 
 void importOne(const std::string& source, const std::string& output, const std::string& picture) {
+  if (!picture.empty() && !core::endsWith(picture, ".svg"))
+    throw core::InputError("--picture '" + picture + "' is not called *.svg, which it will be");
   const map::ImportedNetwork imported = map::importNetwork(source);
   const map::RoadNetwork network = map::RoadNetwork::fromText(imported.text, source);
   const map::DrivableArea area(network);
@@ -30,6 +34,8 @@ void importOne(const std::string& source, const std::string& output, const std::
   for (const std::string& change : imported.changes) std::cout << "change    " << change << "\n";
   if (!output.empty()) core::writeFileAtomically(output, imported.text);
   if (!picture.empty()) core::writeFileAtomically(picture, page::edgeMapSvg(network, std::nullopt));
+  if (!output.empty()) std::cout << "output    " << output << "\n";
+  if (!picture.empty()) std::cout << "picture   " << picture << "\n";
 }
 
 }  // namespace

@@ -87,18 +87,20 @@ bool validateOne(const std::string& scenario_name, const ValidateArguments& argu
 
 /// A row per planner, for scenario files and for people who look for one.
 void printPlanners() {
-  std::cout << "planner          drives    cameras  guided  of\n";
+  constexpr int kCameras = 30;
+  std::cout << std::left << "planner          drives    " << std::setw(kCameras) << "cameras"
+            << "guided  of\n";
   for (const planning::PlannerDescriptor* planner : planners::registeredPlanners()) {
     const std::string roles =
         std::string(planner->drives_ego ? "ego " : "") + (planner->drives_cbv ? "CBVs" : "");
     std::cout << std::left << std::setw(17) << planner->name << std::setw(10) << roles
-              << std::setw(9) << (planner->sees() ? core::joinText(planner->cameras, ",") : "-")
-              << std::setw(8) << (planner->guided ? "yes" : "no")
-              << planners::sourceOf(planner->name) << "\n    " << planner->title << ": "
-              << planner->help << "\n";
+              << std::setw(kCameras)
+              << (planner->sees() ? core::joinText(planner->cameras, ",") : "-") << std::setw(8)
+              << (planner->guided ? "yes" : "no") << planners::sourceOf(planner->name) << "\n    "
+              << planner->title << ": " << planner->help << "\n";
   }
   std::cout << std::left << std::setw(17) << planning::kExternalPlanner << std::setw(10)
-            << "ego CBVs" << std::setw(9) << "-" << std::setw(8) << "no"
+            << "ego CBVs" << std::setw(kCameras) << "-" << std::setw(8) << "no"
             << "this package\n"
             << "    a node of your own that publishes on the control topics (roslaunch only)\n";
 }

@@ -279,6 +279,9 @@ fs::path shippedOrFile(const fs::path& folder, const std::string& name_or_file,
   if (isFile(shipped)) return shipped;
   if (fs::path(name_or_file).has_parent_path() || fs::path(name_or_file).extension() == ".yaml")
     throw InputError(what + " '" + name_or_file + "': there is no such file");
+  if (isFile(name_or_file + ".yaml"))
+    throw InputError(what + " '" + name_or_file + "': there is no such file; did you mean '" +
+                     name_or_file + ".yaml'?");
   const std::vector<std::string> known = shippedNames(folder);
   throw InputError(what + " '" + name_or_file + "' is neither a file nor a shipped " + what +
                    "; the nearest shipped one is '" + nearestName(name_or_file, known) +

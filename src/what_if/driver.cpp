@@ -3,6 +3,7 @@
 #include "what_if/driver.h"
 
 #include "core/option_fields.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -20,9 +21,13 @@ void requireEgoPlanner(const std::string& name) {
   }
   const planning::PlannerDescriptor* descriptor = planners::findPlanner(name);
   if (descriptor != nullptr && descriptor->drives_ego) return;
-  throw InputError("--ego " + name + ": " +
-                   (descriptor == nullptr ? "an unknown planner" : "drives no ego") +
-                   "; known: " + core::joinText(planners::plannerNames(), ", "));
+  std::vector<std::string> known;
+  for (const planning::PlannerDescriptor* planner : planners::registeredPlanners()) {
+    if (planner->drives_ego) known.push_back(planner->name);
+  }
+  throw InputError(
+      "--ego " + name + ": " + (descriptor == nullptr ? "an unknown planner" : "drives no ego") +
+      "; expected one of {" + core::joinText(known, ", ") + "}" + core::didYouMean(name, known));
 }
 
 /// The options that differ from the session's are the driver's own.

@@ -78,8 +78,8 @@ void requireReplayFolder(const std::filesystem::path& bag, const std::filesystem
                          bool overwrite) {
   std::error_code none;
   const std::filesystem::path recorded = std::filesystem::weakly_canonical(bag, none);
-  if (overwrite && (std::filesystem::equivalent(recorded.parent_path(), results, none) ||
-                    std::filesystem::equivalent(bag, results / "session.bag", none))) {
+  if (std::filesystem::equivalent(recorded.parent_path(), results, none) ||
+      std::filesystem::equivalent(bag, results / "session.bag", none)) {
     throw core::InputError("'" + results.string() +
                            "' holds the bag that is replayed; give another folder");
   }
