@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/run_conditions.h"
 #include "evaluation/worker.h"

@@ -60,10 +60,15 @@ Markup caseLink(const SearchCase& one) {
   return element("a", {{"href", "runs/" + one.id + "/report.html" + moment}}, one.id);
 }
 
+/// With places behind the dots of a key where browsers may break a line.
+std::string wrapped(const std::string& key) {
+  return core::joinText(core::splitText(key, '.'), ".\u200b");
+}
+
 Markup caseTable(const Search& search) {
   std::vector<std::string> head = {"#", "Case", "#Score", "What happened"};
   if (search.asksCarefulDriver()) head.emplace_back("Careful driver survives");
-  for (const SearchKey& key : search.space().keys()) head.push_back("#" + key.key);
+  for (const SearchKey& key : search.space().keys()) head.push_back("#" + wrapped(key.key));
   page::HtmlTable table(head);
   std::size_t rank = 0;
   for (const SearchCase* one : worstFirst(search.cases())) {
