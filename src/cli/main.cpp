@@ -24,7 +24,7 @@ std::string sumoVersion() {
   try {
     core::GuardedProcess sumo(core::findProgram("sumo", "sumo"), {"--version"}, {},
                               {{}, -1, output.descriptor()});
-    sumo.waitForEnd(kPatience);
+    sumo.waitForEnd(kPatience, output);
   } catch (const core::Error&) {
     return {};
   }

@@ -145,8 +145,10 @@ int searchScenario(const SearchArguments& arguments) {
   evaluation::writeSearchFiles(search, request, results);
   std::cout << evaluation::searchText(search.cases(), search.asksCarefulDriver()) << "\n"
             << std::flush;
-  if (search.isExhausted())
-    std::cerr << "the space has no further case than these " << search.cases().size() << "\n";
+  if (search.cases().size() < arguments.request.budget && !arguments.engine.prints())
+    std::cerr << (search.isExhausted() ? "the space has no further case than these "
+                                       : "ended before its budget, after ")
+              << search.cases().size() << "\n";
   std::cerr << "report: " << (results / "index.html").string() << "\n";
   return exitCodeOf(search, arguments);
 }

@@ -81,15 +81,12 @@ std::string signalText(int signal) {
   return "signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
 }
 
-ProcessOutput::ProcessOutput()
-    : descriptor_(::memfd_create("process output", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
-  // It takes memory as it fills; what does not fit is an error of the child's.
-  if (::ftruncate(descriptor_.get(), kMost) == 0)
-    (void)::fcntl(descriptor_.get(), F_ADD_SEALS, F_SEAL_GROW);
-}
+ProcessOutput::ProcessOutput() : descriptor_(::memfd_create("process output", MFD_CLOEXEC)) {}
+
+bool ProcessOutput::isTooLong() const { return ::lseek(descriptor_.get(), 0, SEEK_END) > kMost; }
 
 std::string ProcessOutput::end(std::size_t most) const {
-  const off_t size = ::lseek(descriptor_.get(), 0, SEEK_CUR);  // the child's place, too
+  const off_t size = ::lseek(descriptor_.get(), 0, SEEK_END);
   std::string text(std::min(static_cast<std::size_t>(std::max<off_t>(size, 0)), most), '\0');
   const off_t begin = size - static_cast<off_t>(text.size());
   const ssize_t count = ::pread(descriptor_.get(), text.data(), text.size(), begin);
@@ -243,6 +240,17 @@ bool GuardedProcess::waitForEnd(double seconds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return true;
+}
+
+bool GuardedProcess::waitForEnd(double seconds, const ProcessOutput& output) {
+  constexpr double kLook = 0.05;  // [s]
+  for (double waited = 0.0; waited < seconds; waited += kLook) {
+    if (waitForEnd(std::min(kLook, seconds - waited))) return !output.isTooLong();
+    if (!output.isTooLong()) continue;
+    kill();
+    return false;
+  }
+  return false;
 }
 
 void GuardedProcess::signal(int number) {

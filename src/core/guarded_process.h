@@ -62,11 +62,13 @@ int exitCodeOf(int status);
 /// ProcessStreams::output.
 class ProcessOutput {
  public:
-  /// A child cannot write more than this.
+  /// More than this is too long.
   static constexpr std::int64_t kMost = std::int64_t{64} << 20;  // [bytes]
 
   ProcessOutput();
   int descriptor() const { return descriptor_.get(); }
+  /// Whether a child prints as if without end, which takes memory.
+  bool isTooLong() const;
   /// The last `most` bytes, or fewer, of what was printed so far.
   std::string end(std::size_t most = 4000) const;
 
@@ -96,6 +98,8 @@ class GuardedProcess : public ChildProcess {
   bool ended() override;
   /// Waits until it has ended, at most `seconds`; returns whether it has.
   bool waitForEnd(double seconds);
+  /// The same; one whose output is too long is killed, and has not ended.
+  bool waitForEnd(double seconds, const ProcessOutput& output);
   /// Sends a signal to its group; does nothing when it has ended.
   void signal(int number) override;
   /// Ends and reaps the child.

@@ -30,21 +30,22 @@ std::string beatText(std::size_t number) {
   return std::string(kBeatDigits - std::min(kBeatDigits, digits.size()), '0') + digits + "\n";
 }
 
-/// Invalid where the file has gone. Another user's may be for reading alone. Throws InputError for
-/// what is no file that we can read: nobody could say whether its holder lives.
+/// Invalid where the file has gone, or cannot be opened just now. Another user's may be for reading
+/// alone. Throws UnreadableLease.
 FileDescriptor openLease(const fs::path& file) {
   constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
   FileDescriptor descriptor(::open(file.c_str(), kFlags | O_RDWR));
   if (!descriptor && (errno == EACCES || errno == EROFS))
     descriptor = FileDescriptor(::open(file.c_str(), kFlags | O_RDONLY));
   const int reason = errno;
-  if (!descriptor && (reason == ENOENT || reason == ESTALE)) return descriptor;
   struct stat status {};
-  if (descriptor && ::fstat(descriptor.get(), &status) == 0 && S_ISREG(status.st_mode))
-    return descriptor;
-  throw InputError("'" + file.string() + "' is no lease that can be read (" +
-                   (descriptor ? std::string("no regular file") : writeErrorText(reason)) +
-                   "); remove it where nobody works on its run");
+  const bool regular =
+      descriptor && ::fstat(descriptor.get(), &status) == 0 && S_ISREG(status.st_mode);
+  const bool lasts = reason == EACCES || reason == EPERM || reason == ELOOP || reason == EISDIR;
+  if (regular || (!descriptor && !lasts)) return descriptor;
+  throw UnreadableLease("'" + file.string() + "' is no lease that can be read (" +
+                        (descriptor ? std::string("no regular file") : writeErrorText(reason)) +
+                        "); remove it where nobody works on its run");
 }
 
 /// Whether a process of this host has signed the lease; one that is gone counts as such.
@@ -108,7 +109,11 @@ bool LeaseFolder::isLeftBehind(const fs::path& file) {
   const FileDescriptor descriptor = openLease(file);
   if (!descriptor) return false;  // released just now
   const auto facts = holderFacts(descriptor.get());
-  if (isOfThisHost(facts)) return ::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0;
+  if (isOfThisHost(facts)) {
+    if (::flock(descriptor.get(), LOCK_EX | LOCK_NB) == 0) return true;
+    if (errno == EWOULDBLOCK) return false;
+    // A shared disk may lock no file for reading alone: then it is judged as another host's.
+  }
   const auto now = std::chrono::steady_clock::now();
   const auto [place, added] = seen_.try_emplace(file.filename().string(), Seen{facts, now, false});
   Seen& seen = place->second;
@@ -184,7 +189,11 @@ std::map<std::string, LeaseHolder> LeaseFolder::holders() {
 void LeaseFolder::removeLeftBehind() {
   for (const auto& [name, generations] : list()) {
     for (const auto& [generation, file] : generations) {
-      if (isLeftBehind(file)) ::unlink(file.c_str());
+      try {
+        if (isLeftBehind(file)) ::unlink(file.c_str());
+      } catch (const UnreadableLease&) {
+        // whoever asks for holders, or claims the run, hears of it
+      }
     }
   }
   removeLeftDrafts(folder_);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/file_descriptor.h"
+#include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {
 
@@ -29,6 +30,13 @@ struct LeaseTerms {
   /// For how long a file of another host must stay the same to be left behind. A file of this host
   /// is left behind as soon as its process has ended.
   double expiry = 120.0;
+};
+
+/// A lease of which nobody can say whether its holder lives: no file, or one of another user that
+/// we may not read.
+class UnreadableLease : public InputError {
+ public:
+  using InputError::InputError;
 };
 
 /// The right to do one piece of work, as long as the object exists.

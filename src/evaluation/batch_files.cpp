@@ -235,7 +235,7 @@ std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>&
          std::to_string(counts.not_judged) + " were not judged, " + std::to_string(counts.passed) +
          " passed.\n\n" + systemsMarkdown(systemsOf(records)) +
          "\n## Routes\n\nMean \xC2\xB1 standard deviation over seeds (number of seeds that have "
-         "the measure).\n\n" +
+         "the measure); shares are of all samples together.\n\n" +
          cellsTable(cellsOf(records)) + "\n" + withoutCbvText(records);
 }
 

@@ -95,8 +95,8 @@ bool Executor::staysOrIsCounted(std::size_t index) {
   if (!cause.empty()) {
     if (isChosen(index))
       repeated_[cause].push_back(plan_[index].id);
-    else if (earlier->complete() && cause != "program changed")
-      stale_.insert(index);  // of another scenario: it must not count
+    else if (earlier->complete() && isOfAnotherScenario(*earlier, plan_[index]))
+      stale_.insert(index);  // it must not count
     else
       records_.back() = *earlier;
     return false;

@@ -74,6 +74,10 @@ struct RunRecord {
 /// result stands.
 std::string causeToRepeat(const RunRecord& earlier, const PlannedRun& planned);
 
+/// Whether the scenario of a run, or a file of it, is another one by now; weights and program are
+/// none of it, and a record of an earlier version knows no files.
+bool isOfAnotherScenario(const RunRecord& earlier, const PlannedRun& planned);
+
 /// The record of a run that was not started yet.
 RunRecord recordOf(const PlannedRun& run);
 

@@ -53,7 +53,9 @@ Statistics cellStatistics(const std::string& name, const ValuesBySeed& values,
   if (!count && !std::isfinite(rule.most)) return statistics;
   const PooledEstimate pooled = pooledEstimate(records, name, bootstrap, "seed");
   statistics.interval = pooled.interval;
-  if (rule.kind == metrics::Pooling::kShare && pooled.value) statistics.mean = *pooled.value;
+  if (rule.kind != metrics::Pooling::kShare || !pooled.value) return statistics;
+  statistics.mean = *pooled.value;
+  statistics.standard_deviation.reset();  // that of the seeds' means is another thing
   return statistics;
 }
 

@@ -149,6 +149,12 @@ std::vector<std::string> wordsFor(const RunCommand& command, const fs::path& res
   return words;
 }
 
+/// A record that is missing, damaged or another run's.
+class BadRecord : public core::InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// Runs are addressed by their place in the list of ids.
 class Worker {
  public:
@@ -186,13 +192,17 @@ class Worker {
 
   RunRecord recordAt(std::size_t index) const {
     const fs::path file = folderOf(index) / kRecordFile;
-    const auto record = readRecord(file);
+    std::optional<RunRecord> record;
+    try {
+      record = readRecord(file);
+    } catch (const core::InputError& error) {
+      throw BadRecord(error.what());
+    }
     if (!record)
-      throw core::InputError("'" + file.string() + "' is missing, but the run is planned" +
-                             kPlanAgain);
+      throw BadRecord("'" + file.string() + "' is missing, but the run is planned" + kPlanAgain);
     if (record->id == ids_[index]) return *record;
-    throw core::InputError("'" + file.string() + "' is the record of run '" +
-                           core::shortened(record->id) + "'" + kPlanAgain);
+    throw BadRecord("'" + file.string() + "' is the record of run '" + core::shortened(record->id) +
+                    "'" + kPlanAgain);
   }
   /// Whether it needs nothing any more; then it is announced.
   bool isDone(const RunRecord& record) const {
@@ -241,34 +251,46 @@ class Worker {
                            "where it is now");
   }
 
-  /// A run whose record is missing, damaged or another's cannot be done; the others go on.
-  bool claim(std::size_t index) {
+  /// A run whose lease or record nobody can use is named, and the others go on.
+  bool refuse(std::size_t index, const core::InputError& error) const {
     requireResults();
-    try {
-      return claimRecorded(index);
-    } catch (const core::InputError& error) {
-      requireResults();
-      RunRecord record;
-      record.id = ids_[index];
-      record.status = "error";
-      record.cause = core::plainText(error.what());
-      record.exit_code = ExitCode::kBadInput;
-      if (options_.ended) options_.ended(record);
-      return false;
-    }
+    RunRecord record;
+    record.id = ids_[index];
+    record.status = "error";
+    record.cause = core::plainText(error.what());
+    record.exit_code = ExitCode::kBadInput;
+    if (options_.ended) options_.ended(record);
+    return false;
   }
 
   /// Whether the run is ours to do now. What another worker has waits in `taken_`.
-  bool claimRecorded(std::size_t index) {
+  bool claim(std::size_t index) {
+    requireResults();
     if (looksDone(index)) return false;
+    try {
+      return claimReadable(index);
+    } catch (const core::UnreadableLease& error) {
+      return refuse(index, error);
+    }
+  }
+
+  bool claimReadable(std::size_t index) {
     std::shared_ptr<const core::Lease> lease = leases_.claim(ids_[index]);
     if (!lease) {
       taken_.push_back(index);
       return false;
     }
     finishSettingAside(options_.results, ids_[index]);
-    const RunRecord record = recordAt(index);  // as it is now that nobody else writes it
-    if (isDone(record)) return false;
+    try {
+      const RunRecord record = recordAt(index);  // as it is now that nobody else writes it
+      return !isDone(record) && take(index, std::move(lease), record);
+    } catch (const BadRecord& error) {
+      return refuse(index, error);
+    }
+  }
+
+  /// Makes a run's folder ours.
+  bool take(std::size_t index, std::shared_ptr<const core::Lease> lease, const RunRecord& record) {
     if (!isAnotherHosts(options_.results, ids_[index], *lease)) {
       core::FolderLock::removeLeftBehind(folderOf(index));  // of a session that was killed
     } else if (!setAside(options_.results, ids_[index], *lease)) {

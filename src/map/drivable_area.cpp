@@ -195,6 +195,7 @@ double DrivableArea::signedDistance(const Eigen::Vector2d& position, double elev
 
 double DrivableArea::signedDistance(const geometry::OrientedBox& box, double elevation) const {
   double least = std::numeric_limits<double>::infinity();
+  if (!box.center.allFinite() || !std::isfinite(box.heading)) return -least;  // nowhere
   for (const Eigen::Vector2d& corner : box.corners())
     least = std::min(least, signedDistance(corner, elevation));
   return least;

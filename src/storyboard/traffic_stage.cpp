@@ -578,8 +578,10 @@ std::vector<std::shared_ptr<Performance>> TrafficStage::start(
 
 void TrafficStage::measure(Member& known, const traffic::VehicleState& before, double step) const {
   known.acceleration = (known.state.speed - before.speed) / step;
-  const double farthest = std::max(before.speed, known.state.speed) * step + kRounding;
-  known.traveled += std::min(farthest, (known.state.position - before.position).norm());  // no jump
+  const double farthest =
+      std::max(std::abs(before.speed), std::abs(known.state.speed)) * step + kRounding;
+  known.traveled +=
+      std::min(farthest, (known.state.position - before.position).norm());  // not a jump
   const auto count = [step](double& seconds, bool more) { seconds = more ? seconds + step : 0.0; };
   count(known.standing, known.state.speed < 0.05);
   count(known.off_road, !places_.isOnLane(known.reference));

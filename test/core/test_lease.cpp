@@ -201,6 +201,10 @@ TEST_F(LeaseTest, WithoutContentIsLeftBehindOnlyOnceItStaysSo) {
   fs::create_directories(folder_);
   std::ofstream(file("a.1").string()) << "";
   EXPECT_EQ(leases(60.0, 60.0).claim("a"), nullptr);
+  LeaseFolder mine = leases(60.0, 0.01);
+  EXPECT_EQ(mine.claim("a"), nullptr);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_NE(mine.claim("a"), nullptr);
 }
 
 TEST_F(LeaseTest, SaysThatItsFolderCannotBeWritten) {

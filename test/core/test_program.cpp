@@ -67,14 +67,18 @@ TEST(Program, WritesBeyondALimitAreErrorsThatNameIt) {
   EXPECT_EQ(code, 0);
 }
 
-TEST(Program, AChildThatPrintsWithoutEndTakesNoMemoryWithoutEnd) {
+TEST(Program, AChildThatPrintsWithoutEndIsEnded) {
   const ProcessOutput output;
   GuardedProcess child("/usr/bin/yes", {}, {}, {{}, -1, output.descriptor()});
-  ASSERT_TRUE(child.waitForEnd(300.0));
-  EXPECT_EQ(child.exitCode(), 1);  // write error
-  EXPECT_EQ(output.end(4), "y\ny\n");
-  EXPECT_EQ(output.end(std::size_t{1} << 30).size(),
-            static_cast<std::size_t>(ProcessOutput::kMost));
+  EXPECT_FALSE(child.waitForEnd(300.0, output));
+  EXPECT_TRUE(output.isTooLong());
+  EXPECT_EQ(child.endSignal(), SIGKILL);
+  EXPECT_EQ(output.end(4).size(), 4U);
+  const ProcessOutput few;
+  GuardedProcess other("/bin/sh", {"-c", "echo a; echo b > /dev/stderr"}, {},
+                       {{}, -1, few.descriptor()});
+  EXPECT_TRUE(other.waitForEnd(300.0, few));
+  EXPECT_EQ(few.end(), "b\n") << "a shell's redirection begins the file anew";
 }
 
 TEST(Program, AStopSignalBeforeThereIsAnythingToStopEndsItWithAWord) {

@@ -107,7 +107,7 @@ bool Search::propose(std::size_t number, const std::vector<RatedPoint>& rated,
     else
       refused = error;
   }
-  if (allowed || refused.empty()) return false;
+  if (allowed || refused.empty() || !cases_.empty()) return false;
   throw core::InputError(request_.options_source + ": the scenario refuses each of " +
                          std::to_string(kMostAttempts) +
                          " cases, though it takes the values one by one: " + refused);

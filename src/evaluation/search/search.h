@@ -71,8 +71,8 @@ class Search {
   /// Plans the next batch, runs it and rates its cases. Gives false, and changes nothing, once the
   /// budget is spent or where a session of the batch was not run or was interrupted.
   bool advance(const std::filesystem::path& results, const Runner& run);
-  /// Whether the budget is not spent, but the space has no further case.
-  bool isExhausted() const { return cases_.size() < request_.budget && proposed().empty(); }
+  /// Whether every case of the space is there.
+  bool isExhausted() const { return static_cast<double>(cases_.size()) >= space_.size(); }
   /// Those of all batches so far, in their order.
   const std::vector<SearchCase>& cases() const { return cases_; }
 

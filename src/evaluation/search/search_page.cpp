@@ -52,6 +52,10 @@ std::string traceOf(const SearchCase& one, const fs::path& results) {
 }
 
 /// A link to the report of a case, at its contact.
+std::string carefulText(const SearchCase& one) {
+  return one.careful_broke ? "broke" : answerText(one.careful_survives);
+}
+
 Markup caseLink(const SearchCase& one) {
   if (!one.record.complete()) return one.id;
   const auto& contact = one.score.contact;
@@ -74,7 +78,7 @@ Markup caseTable(const Search& search) {
   for (const SearchCase* one : worstFirst(search.cases())) {
     std::vector<Markup> cells = {std::to_string(++rank), caseLink(*one),
                                  core::formatFixed(one->worth(), kScoreDecimals), eventText(*one)};
-    if (search.asksCarefulDriver()) cells.emplace_back(answerText(one->careful_survives));
+    if (search.asksCarefulDriver()) cells.emplace_back(carefulText(*one));
     for (const std::string& assignment : one->set)
       cells.emplace_back(assignment.substr(assignment.find('=') + 1));
     table.row(cells);
@@ -119,7 +123,7 @@ std::string casesCsv(const Search& search, std::size_t batch, const fs::path& re
                                       core::formatNumber(one.worth()),
                                       one.isFound() ? "yes" : "no",
                                       eventText(one),
-                                      answerText(one.careful_survives),
+                                      carefulText(one),
                                       traceOf(one, results)};
     for (const std::string& assignment : one.set)
       cells.push_back(assignment.substr(assignment.find('=') + 1));

@@ -122,6 +122,17 @@ SearchSpace::SearchSpace(const SearchOptions& options, const session::SessionReq
     throw InputError(source + ": no key is left that acts in this scenario; expected one or more");
 }
 
+double SearchSpace::size() const {
+  double size = 1.0;
+  for (const SearchKey& key : keys_) {
+    if (!key.levels.empty())
+      size *= static_cast<double>(key.levels.size());
+    else
+      size *= key.whole ? key.high - key.low + 1.0 : kRangeSteps + 1.0;
+  }
+  return size;
+}
+
 std::vector<std::string> SearchSpace::assignments(const SearchPoint& point) const {
   std::vector<std::string> set;
   for (std::size_t i = 0; i < keys_.size(); ++i)

@@ -40,6 +40,8 @@ class SearchSpace {
 
   const std::vector<SearchKey>& keys() const { return keys_; }
   const std::vector<std::string>& leftOut() const { return left_out_; }
+  /// How many cases there are.
+  double size() const;
   /// "key=value" of each key at a place.
   std::vector<std::string> assignments(const SearchPoint& point) const;
 

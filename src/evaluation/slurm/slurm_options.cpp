@@ -15,12 +15,15 @@ namespace {
 
 /// What the engine sets itself, by which it finds and follows its jobs.
 void requireNotOurs(const std::string& argument) {
-  constexpr const char* kOurs[] = {
-      "--array",    "--job-name", "--output",    "--error", "--export",  "--open-mode", "--signal",
-      "--parsable", "--wait",     "--test-only", "--wrap",  "--requeue", "--no-requeue"};
-  constexpr const char* kLetters[] = {"-a", "-J", "-o", "-e", "-W"};
+  constexpr const char* kOurs[] = {"--array",      "--job-name",  "--output", "--error",
+                                   "--export",     "--open-mode", "--signal", "--parsable",
+                                   "--wait",       "--test-only", "--wrap",   "--requeue",
+                                   "--no-requeue", "--clusters"};
+  constexpr const char* kLetters[] = {"-a", "-J", "-o", "-e", "-W", "-M"};
   const std::string name = argument.substr(0, argument.find_first_of("= "));
-  const auto is = [&](const char* ours) { return name == ours; };
+  const auto is = [&](const char* ours) {  // sbatch takes the beginning of a name, too
+    return name.size() > 2 && std::string(ours).rfind(name, 0) == 0;
+  };
   const auto begins = [&](const char* letter) { return argument.rfind(letter, 0) == 0; };
   if (std::none_of(std::begin(kOurs), std::end(kOurs), is) &&
       std::none_of(std::begin(kLetters), std::end(kLetters), begins))

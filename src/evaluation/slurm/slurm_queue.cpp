@@ -30,18 +30,21 @@ Answer ask(const std::string& command, const std::vector<std::string>& arguments
   const core::ProcessOutput output;
   core::GuardedProcess process(core::findProgram(command, kPackage), arguments, {},
                                {{}, -1, output.descriptor()});
-  const bool ended = process.waitForEnd(kPatience);
+  const bool ended = process.waitForEnd(kPatience, output);
   process.kill();
   std::string text = output.end(kMostOutput);
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  if (!ended) text = "no answer within " + core::formatNumber(kPatience) + " s";
+  if (!ended)
+    text = output.isTooLong() ? "it prints without end"
+                              : "no answer within " + core::formatNumber(kPatience) + " s";
   return {ended && process.exitCode() == 0, text};
 }
 
 /// Whether a line is the id of a job or of tasks of one ("12", "12_3", "12_[0-3%2]"), and none of
 /// the words that sites and Slurm add.
-bool isJobId(const std::string& line) {
-  return !line.empty() && line.find_first_not_of("0123456789_[]-,%") == std::string::npos;
+bool isTaskId(const std::string& line) {
+  return !line.empty() && std::isdigit(static_cast<unsigned char>(line.front())) != 0 &&
+         line.find_first_not_of("0123456789_[]-,%") == std::string::npos;
 }
 
 Answer require(const std::string& command, const std::vector<std::string>& arguments) {
@@ -74,7 +77,7 @@ std::string submitJob(const std::vector<std::string>& arguments) {
   const std::vector<std::string> lines = core::splitText(text, '\n');
   for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
     const std::string id = line->substr(0, line->find(';'));
-    if (isJobId(id)) return id;
+    if (!id.empty() && id.find_first_not_of("0123456789") == std::string::npos) return id;
   }
   throw core::InputError("sbatch gave no job id but '" + core::shortened(text) + "'");
 }
@@ -84,7 +87,7 @@ std::optional<std::size_t> queuedTasks(const std::string& job_name) {
       ask("squeue", {"--me", "--noheader", "--array", "--format=%i", "--name=" + job_name});
   if (!answer.succeeded) return std::nullopt;
   const std::vector<std::string> lines = core::splitText(answer.text, '\n');
-  return static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), isJobId));
+  return static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), isTaskId));
 }
 
 void cancelJobs(const std::string& job_name) { require("scancel", {"--me", "--name=" + job_name}); }
@@ -108,8 +111,9 @@ nlohmann::json engineIn(const fs::path& results) {
 
 /// Whether the jobs work on another folder, of which this one is a copy.
 bool isCopy(const nlohmann::json& engine, const fs::path& results) {
-  const std::string here = fs::weakly_canonical(results).string();
-  return engine.value("results", here) != here;
+  const fs::path there = engine.value("results", results.string());
+  std::error_code none;
+  return fs::exists(there, none) && !fs::equivalent(there, results, none);
 }
 
 }  // namespace

@@ -236,7 +236,9 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
                                core::environmentWith("SUMO_HOME", core::sumoHome().string()),
                                core::ProcessStreams{{}, -1, output.descriptor()});
   process.setDeadline(limit);
-  while (!process.waitForEnd(kStopPeriod)) {
+  while (!process.waitForEnd(kStopPeriod, output)) {
+    if (output.isTooLong())
+      throw core::InputError(subject + ": netconvert prints without end: " + output.end());
     if (core::stopRequested()) throw core::Interrupted("interrupted while netconvert ran");
   }
   if (process.deadlineMissed()) {

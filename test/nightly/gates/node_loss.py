@@ -25,8 +25,10 @@ def replay(folder, recorder):
         return None
     program, code = run_cdiff(["replay", bag_of(results), "--results", folder / "again", "--quiet"], folder)
     wrong = misbehavior(program, code, {0, 1, 2} | ({3} if recorder or not begun else set()))
-    if wrong or code == 3:
+    if wrong or code == 3 or not begun:
         return wrong
+    if not (folder / "again" / "trace.csv").exists():
+        return "the replay has no trace"
     missing = ticks(results) - ticks(folder / "again")
     # A lost recorder may lack its last chunk; another one writes what it was told of until the end.
     return f"the replay lacks {missing} of {ticks(results)} ticks" if missing > (1000 if recorder else 1) else None
