@@ -232,10 +232,10 @@ TEST_F(WorkerTest, RefusesAFolderWithoutPlanAndADamagedPlan) {
   EXPECT_THROW(readPlan(scratch_.path() / "nothing"), core::InputError);
   std::ofstream(scratch_.path() / PlanFile::kName) << R"({"schema_version": 1})";
   EXPECT_THROW(readPlan(scratch_.path()), core::InputError);
+  fs::remove(scratch_.path() / PlanFile::kName);
   const auto reads = [&](const std::string& version, double timeout, int retries,
                          const std::string& id) {
-    announce({"good"});
-    PlanFile plan = readPlan(scratch_.path());
+    PlanFile plan;
     plan.timeout = timeout;
     plan.retries = retries;
     plan.ids = {id};
@@ -243,7 +243,7 @@ TEST_F(WorkerTest, RefusesAFolderWithoutPlanAndADamagedPlan) {
     const fs::path file = scratch_.path() / PlanFile::kName;
     std::string text = core::readFile(file, "plan");
     text.replace(text.find("1,"), 1, version);
-    core::writeFileAtomically(file, text);
+    core::writeOwnFile(file, text);
     readPlan(scratch_.path());
   };
   EXPECT_NO_THROW(reads("1", 1.0, 0, "a"));

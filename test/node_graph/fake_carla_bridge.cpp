@@ -265,7 +265,7 @@ void Bridge::publishFrame() {
 
 /// Before the first commands somebody may still start; later only what hangs takes long.
 void Bridge::waitForCommands() {
-  const double patience = counts_.empty() ? 1.0 : 30.0;  // [s] of wall time
+  const double patience = counts_.empty() ? 1.0 : 5.0;  // [s] of wall time
   while (ros::ok() && !received_ && secondsSince(published_) < patience)
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
   if (!received_) ++timeouts_;
