@@ -94,6 +94,7 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner,
       fault = "the planner answered for other vehicles than it was asked for";
   } catch (const std::exception& error) {
     fault = error.what();
+    if (fault.empty()) fault = "the planner threw an exception without a text";
   } catch (...) {
     fault = "the planner threw something that is no std::exception";
   }
