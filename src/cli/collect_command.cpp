@@ -200,11 +200,7 @@ std::vector<std::string> drivingWords(std::vector<std::string> words) {
 /// good ones.
 std::string changedFiles(const evaluation::RunRecord& there, const evaluation::PlannedRun& run) {
   if (there.inputs.empty()) return "";  // of an earlier version
-  evaluation::InputHashes before = there.inputs;
-  evaluation::InputHashes now = run.inputs;
-  before.erase("program");
-  now.erase("program");
-  return evaluation::changedInputs(before, now);
+  return evaluation::changedInputs(there.inputs, run.inputs, {"program"});
 }
 
 /// Throws InputError where samples or a scene of the session are there that were asked for with

@@ -82,12 +82,6 @@ std::string suiteOf(const std::string& name) {
   return core::isFile(fs::path(name) / "suite.yaml") ? fs::absolute(name).string() : name;
 }
 
-/// Without the slash at the end of a folder.
-std::string suiteName(const std::string& name) {
-  const fs::path path = fs::path(name).lexically_normal();
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
-
 /// The matrix on its own routes or on those of the arguments; without a matrix these routes with
 /// everything as scenarios have it.
 MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
@@ -104,7 +98,7 @@ MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
   if (suite && bench2drive)
     throw InputError("give either --suite or --bench2drive: a batch has routes of one kind");
   MatrixOptions matrix;
-  matrix.name = suite ? suiteName(arguments.suite) : "bench2drive";
+  matrix.name = suite ? evaluation::suiteName(arguments.suite) : "bench2drive";
   if (!arguments.matrix.empty()) matrix = evaluation::loadMatrix(arguments.matrix);
   if (!suite && !bench2drive) return matrix;
   matrix.scenarios.clear();

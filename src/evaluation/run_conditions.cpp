@@ -14,6 +14,7 @@
 #include "evaluation/matrix.h"
 #include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
+#include "evaluation/suite_selection.h"
 #include "session/scenario_options.h"
 
 namespace cdiff::evaluation {
@@ -127,8 +128,7 @@ BatchConditions readConditions(const fs::path& results, const std::vector<RunRec
   const fs::path file = results / "matrix.yaml";
   core::loadOptions({file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)},
                     matrix);
-  const fs::path suite = fs::path(matrix.suite).lexically_normal();
-  conditions.suite = (suite.has_filename() ? suite : suite.parent_path()).filename().string();
+  conditions.suite = suiteName(matrix.suite);
   std::map<std::string, RunScenario> known;  // repetitions have the same scenario text
   for (const RunRecord& record : records) {
     if (!record.complete()) continue;

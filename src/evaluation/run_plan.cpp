@@ -97,7 +97,8 @@ const std::string& programSha256() {
   return hash;
 }
 
-std::string changedInputs(const InputHashes& before, const InputHashes& now) {
+std::string changedInputs(const InputHashes& before, const InputHashes& now,
+                          const std::set<std::string>& others) {
   std::set<std::string> changed;
   for (const auto& [name, hash] : now) {
     const auto earlier = before.find(name);
@@ -106,6 +107,7 @@ std::string changedInputs(const InputHashes& before, const InputHashes& now) {
   for (const auto& [name, hash] : before) {
     if (now.count(name) == 0) changed.insert(name);
   }
+  for (const std::string& name : others) changed.erase(name);
   return core::joinText({changed.begin(), changed.end()}, ", ");
 }
 

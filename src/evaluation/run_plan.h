@@ -45,7 +45,9 @@ class InputHasher {
 const std::string& programSha256();
 
 /// Names of the inputs that differ, or are on one side only, joined by ", "; empty when none does.
-std::string changedInputs(const InputHashes& before, const InputHashes& now);
+/// Those in `others` do not count.
+std::string changedInputs(const InputHashes& before, const InputHashes& now,
+                          const std::set<std::string>& others = {});
 
 // The runs of a matrix in a fixed order, each with its factors and its resolved scenario: wrong
 // input is found here, before anything runs.

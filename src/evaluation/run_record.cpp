@@ -198,13 +198,8 @@ std::string causeToRepeat(const RunRecord& earlier, const PlannedRun& planned) {
 bool isOfAnotherScenario(const RunRecord& earlier, const PlannedRun& planned) {
   if (earlier.scenario_sha256 != planned.scenario_sha256) return true;
   if (earlier.inputs.empty()) return false;
-  InputHashes before = earlier.inputs;
-  InputHashes now = planned.inputs;
-  for (const char* other : {"program", "ego_weights", "cbv_weights"}) {
-    before.erase(other);
-    now.erase(other);
-  }
-  return !changedInputs(before, now).empty();
+  return !changedInputs(earlier.inputs, planned.inputs, {"program", "ego_weights", "cbv_weights"})
+              .empty();
 }
 
 RunRecord recordOf(const PlannedRun& run) {

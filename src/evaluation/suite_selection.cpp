@@ -94,6 +94,11 @@ std::string repeatedText(const Bench2DriveSelection& selection) {
          std::to_string(selection.routes.size() + selection.repeated.size()) + " routes are run\n";
 }
 
+std::string suiteName(const std::string& name_or_folder) {
+  const std::filesystem::path path = std::filesystem::path(name_or_folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 namespace {
 
 namespace fs = std::filesystem;

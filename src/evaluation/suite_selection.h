@@ -34,6 +34,9 @@ Bench2DriveSelection selectBench2Drive(const Bench2DriveOptions& options);
 /// "left out ..." for people; empty where nothing was.
 std::string repeatedText(const Bench2DriveSelection& selection);
 
+/// Name of a suite that is given by name or by its folder, with a slash at the end or without.
+std::string suiteName(const std::string& name_or_folder);
+
 // Opening a sealed suite (suite/seal.h) in an evaluation: only with a reason, and on record.
 
 /// Names of the sealed suites that a matrix runs, by its suite or by single scenarios; sorted.

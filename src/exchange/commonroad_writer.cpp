@@ -92,23 +92,10 @@ void addState(xml_node node, const SceneState& state) {
   addExact(node, "velocity", decimal(pose.speed));
 }
 
-/// A session's result has boxes alone.
-const char* typeOf(const traffic::VehicleDimensions& size) {
-  if (traffic::isUpright(size)) return "pedestrian";
-  switch (traffic::classOf(size)) {
-    case traffic::VehicleClass::kNarrow:
-      return "bicycle";
-    case traffic::VehicleClass::kLarge:
-      return "truck";
-    case traffic::VehicleClass::kCar:
-      break;
-  }
-  return "car";
-}
-
 void addObstacle(xml_node root, const SceneVehicle& vehicle, std::size_t id) {
   const xml_node obstacle = append(root, "dynamicObstacle", {{"id", std::to_string(id)}});
-  appendText(obstacle, "type", typeOf(vehicle.dimensions));
+  const bool upright = traffic::isUpright(vehicle.dimensions);
+  appendText(obstacle, "type", upright ? "pedestrian" : vehicleWord(vehicle.dimensions));
   addRectangle(append(obstacle, "shape"), vehicle.dimensions);
   addState(append(obstacle, "initialState"), vehicle.states.front());
   const xml_node trajectory = append(obstacle, "trajectory");

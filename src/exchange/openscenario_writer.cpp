@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "e2e_cdiff/geometry/shapes.h"
 #include "exchange/xml_tree.h"
-#include "traffic/vehicle_class.h"
 
 namespace cdiff::exchange {
 namespace {
@@ -53,24 +52,11 @@ void addAxle(xml_node axles, const char* name, double x, double width) {
 }
 
 /// The vehicle's box and axles, from its rear axle.
-/// A pedestrian's box has no category of vehicles: it is exported as the nearest one.
-const char* categoryOf(const traffic::VehicleDimensions& size) {
-  switch (traffic::classOf(size)) {
-    case traffic::VehicleClass::kNarrow:
-      return "bicycle";
-    case traffic::VehicleClass::kLarge:
-      return "truck";
-    case traffic::VehicleClass::kCar:
-      break;
-  }
-  return "car";
-}
-
 void addBody(xml_node object, const SceneVehicle& vehicle) {
   const traffic::VehicleDimensions& size = vehicle.dimensions;
   const xml_node body =
       append(object, "Vehicle",
-             {{"name", vehicle.id}, {"vehicleCategory", categoryOf(size)}, {"mass", "1500"}});
+             {{"name", vehicle.id}, {"vehicleCategory", vehicleWord(size)}, {"mass", "1500"}});
   const xml_node box = append(body, "BoundingBox");
   append(box, "Center",
          {{"x", formatNumber(rearAxleToCenter(size))},

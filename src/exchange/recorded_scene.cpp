@@ -15,6 +15,7 @@
 #include "record/logs/size_log.h"
 #include "record/result_folder.h"
 #include "record/session_yaml.h"
+#include "traffic/vehicle_class.h"
 
 namespace cdiff::exchange {
 namespace {
@@ -184,6 +185,18 @@ void takeContact(const nlohmann::json& summary, SceneFacts& facts) {
 }
 
 }  // namespace
+
+const char* vehicleWord(const traffic::VehicleDimensions& size) {
+  switch (traffic::classOf(size)) {
+    case traffic::VehicleClass::kNarrow:
+      return "bicycle";
+    case traffic::VehicleClass::kLarge:
+      return "truck";
+    case traffic::VehicleClass::kCar:
+      break;
+  }
+  return "car";
+}
 
 void SceneOptions::validate() const {
   if (!(from >= 0.0) || (to && !(*to > from))) {

@@ -14,6 +14,9 @@
 
 namespace cdiff::exchange {
 
+/// "car", "truck" or "bicycle", as both formats call a body: results hold boxes alone.
+const char* vehicleWord(const traffic::VehicleDimensions& size);
+
 /// Which part of a session is exported.
 struct SceneOptions {
   double from = 0.0;         ///< [s] of the session

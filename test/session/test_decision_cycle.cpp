@@ -201,6 +201,15 @@ TEST(DecisionCycle, APlannerThatThrowsIsFullBrakingAndOneFaultADecision) {
   EXPECT_EQ(record.faults, (std::vector<std::string>{planner, planner, "user"}));
 }
 
+TEST(DecisionCycle, SoIsOneThatThrowsAnExceptionWithoutAText) {
+  Cycle cycle;
+  cycle.parts.cbv_planner = {
+      std::make_unique<Braking>([](const PlanningTask&) { throw std::runtime_error(""); })};
+  const Record record = cycle.run();
+  EXPECT_EQ(record.actions[0][1].action, traffic::ControlAction::failSafe());
+  EXPECT_FALSE(record.actions[0][1].fault.empty());
+}
+
 TEST(DecisionCycle, SoIsOneThatThrowsWhatIsNoException) {
   Cycle cycle;
   cycle.parts.cbv_planner = {std::make_unique<Braking>([](const PlanningTask&) { throw 7; })};

@@ -205,7 +205,8 @@ TEST_F(StoryboardTrafficStage, WhoStandsHasAnEndlessHeadway) {
   EXPECT_TRUE(stage_.holds(condition, time_));
 }
 
-// The car at 120 m, the ego 90 m behind the begin of the car's lanes: 1 m to the right of them.
+// The car is at 120 m. The ego is 90 m behind it, where the car's route has not begun, and 1 m to
+// the right.
 TEST_F(StoryboardTrafficStage, WhoIsBehindIsMeasuredAlongTheLanesToo) {
   begin(placeAt(120.0));
   traffic::VehicleState state;

@@ -51,11 +51,12 @@ std::string traceOf(const SearchCase& one, const fs::path& results) {
   return summary.is_object() ? summary.value("trace_sha256", "") : "";
 }
 
-/// A link to the report of a case, at its contact.
+/// What came of the careful driver's session: as answerText(), or "broke".
 std::string carefulText(const SearchCase& one) {
   return one.careful_broke ? "broke" : answerText(one.careful_survives);
 }
 
+/// A link to the report of a case, at its contact.
 Markup caseLink(const SearchCase& one) {
   if (!one.record.complete()) return one.id;
   const auto& contact = one.score.contact;
