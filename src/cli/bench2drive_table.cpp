@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
 #include "evaluation/suite_selection.h"
 #include "map/route_source.h"
@@ -55,13 +56,7 @@ std::string rejections(const json& rejected) {
   return core::joinText(texts, ", ");
 }
 
-Row readRow(const RunRecord& record, const fs::path& results) {
-  Row row;
-  const fs::path file = evaluation::runFolder(results, record.id) / "summary.json";
-  if (!fs::exists(file)) return row;
-  row.passed = valueText(record, "cbv_passed_percent");
-  row.completed = valueText(record, "cbv_completion_percent");
-  const json summary = json::parse(core::readFile(file, "summary"));
+void takeSummary(const json& summary, Row& row) {
   row.status = summary.at("status");
   row.completion = core::formatFixed(summary.at("ego").at("route_completion_percent"), 1);
   row.contacts = std::to_string(summary.at("ego").at("collisions").get<int>());
@@ -82,6 +77,21 @@ Row readRow(const RunRecord& record, const fs::path& results) {
       row.conflict =
           core::formatFixed(point.at("x"), 1) + ", " + core::formatFixed(point.at("y"), 1);
     }
+  }
+}
+
+Row readRow(const RunRecord& record, const fs::path& results) {
+  Row row;
+  const fs::path file = evaluation::runFolder(results, record.id) / "summary.json";
+  if (!fs::exists(file)) return row;
+  row.passed = valueText(record, "cbv_passed_percent");
+  row.completed = valueText(record, "cbv_completion_percent");
+  try {
+    takeSummary(core::readJson(file, "summary"), row);
+  } catch (const json::exception& error) {
+    throw core::InputError("'" + file.string() +
+                           "' is no summary of a session: " + core::jsonFault(error) +
+                           "; delete the record.json beside it to have the run repeated");
   }
   return row;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "core/markup.h"
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "exchange/scene_exporter.h"
@@ -42,7 +43,7 @@ void replayInto(const fs::path& bag, const fs::path& folder) {
 #ifdef E2E_CDIFF_WITH_ROS
   const node_graph::ReplayResult result = node_graph::replayBag(bag, folder);
   for (const std::string& finding : result.findings)
-    std::cerr << "cdiff: bag '" << bag.string() << "': " << finding << "\n";
+    std::cerr << "cdiff: bag '" << bag.string() << "': " << core::plainText(finding) << "\n";
 #else
   (void)folder;
   throw core::InputError("'" + bag.string() +

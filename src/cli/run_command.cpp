@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "core/clock.h"
 #include "core/forked_work.h"
+#include "core/markup.h"
 #include "core/program.h"
 #include "core/stage_times.h"
 #include "core/text.h"
@@ -57,6 +58,9 @@ struct RunOutput {
   std::optional<std::uint16_t> watch_port = {};  ///< of a live page; 0: a free one; absent: none
   double answer_timeout = 30.0;  ///< of one call of a plug-in or of libsumo, wall time [s]
 };
+
+/// What is said may quote plug-ins, SUMO, ffmpeg and files.
+void say(const std::string& text) { std::cerr << "cdiff: " << core::plainText(text) << "\n"; }
 
 bool isJudged(int exit_code) {
   return exit_code == ExitCode::kPassed || exit_code == ExitCode::kVerdictFailed;
@@ -123,7 +127,7 @@ class BagRecording : public session::SessionObserver {
     try {
       writing();
     } catch (const std::exception& error) {
-      std::cerr << "cdiff: " << error.what() << "; the other results are not affected\n";
+      say(error.what() + std::string("; the other results are not affected"));
       error_ = error.what();
       bag_.reset();
     }
@@ -156,7 +160,7 @@ class VideoRecord {
  private:
   void reportError() {
     if (reported_ || video_->error().empty()) return;
-    std::cerr << "cdiff: " << video_->error() << "; the other results are not affected\n";
+    say(video_->error() + "; the other results are not affected");
     reported_ = true;
   }
   std::unique_ptr<video::SessionVideo> video_;
@@ -203,9 +207,8 @@ void printTable(const page::ResultWriter& writer, const RunOutput& output) {
             << record::fileRow("video", folder / video::kVideoFile) << std::flush;
   std::error_code gone;
   if (!fs::equivalent(folder, output.folder, gone))
-    std::cerr << "cdiff: the result folder '" << output.folder.string()
-              << "' was renamed while the session ran; the result is in '" << folder.string()
-              << "'\n";
+    say("the result folder '" + output.folder.string() +
+        "' was renamed while the session ran; the result is in '" + folder.string() + "'");
 }
 
 void finishResult(page::ResultWriter& writer, double wall_seconds) {
@@ -214,7 +217,7 @@ void finishResult(page::ResultWriter& writer, double wall_seconds) {
   } catch (const core::InputError& error) {
     throw core::Error(error.what());  // no fault of the input: the folder could be written before
   }
-  if (!writer.failure().empty()) std::cerr << "cdiff: " << writer.failure() << "\n";
+  if (!writer.failure().empty()) say(writer.failure());
 }
 
 /// Runs the session and records it; an exit code.
@@ -254,11 +257,9 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   if (live != nullptr) live->finish();
   const record::Verdict& verdict = writer.result().verdict;
   if (verdict.outcome == record::Outcome::kNotJudged && options.verdict.judge)
-    std::cerr << "cdiff: NOT JUDGED: " << verdict.reasons.front()
-              << "; exit code 0 means nothing\n";
+    say("NOT JUDGED: " + verdict.reasons.front() + "; exit code 0 means nothing");
   const std::string untested = record::untestedText(writer.result());
-  if (!untested.empty())
-    std::cerr << "cdiff: " << untested << "; why, says report.html, 'Why others were no CBVs'\n";
+  if (!untested.empty()) say(untested + "; why, says report.html, 'Why others were no CBVs'");
   return !bag_error.empty() && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
 }
 
@@ -297,7 +298,7 @@ int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
     const auto folder = claim();
     page::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
     recordFailedStart(writer, error.what());
-    std::cerr << "cdiff: " << error.what() << "\n";
+    say(error.what());
     writer.finish(secondsSince(begin));
     printTable(writer, output);
     return writer.exitCode();
@@ -314,7 +315,7 @@ int runHere(PreparedRun& run, const std::atomic<bool>& stop) {
 /// only calls of what others have written must answer in time.
 int runSession(PreparedRun& run, const std::atomic<bool>& stop) {
   for (const std::string& warning : session::scenarioWarnings(run.setup))
-    std::cerr << "cdiff: warning: " << warning << "\n";
+    say("warning: " + warning);
 #ifdef E2E_CDIFF_WITH_ROS
   const RunOutput& output = run.output;
   const double answer_timeout =

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "core/markup.h"
 #include "core/process_pool.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -62,7 +63,7 @@ int trainAndDraw(const std::vector<std::string>& arguments) {
     const fs::path page = writeTrainingPage(output);
     std::cerr << "curves: " << page.string() << "\n";
   } catch (const core::Error& error) {
-    std::cerr << "cdiff: the curves are not drawn: " << error.what() << "\n";
+    std::cerr << "cdiff: the curves are not drawn: " << core::plainText(error.what()) << "\n";
   }
   return code;
 }

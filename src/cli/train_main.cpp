@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/refused_arguments.h"
+#include "core/markup.h"
 #include "core/program.h"
 #include "learning/trainer.h"
 #include "learning/training_options.h"
@@ -56,7 +57,7 @@ int main(int argc, char** argv) {
     return trainAsAsked(argc, argv);
   } catch (const std::exception& error) {
     const cdiff::core::Failure failure = cdiff::core::failureOf(error);
-    std::cerr << kCommand << ": " << failure.text << "\n";
+    std::cerr << kCommand << ": " << cdiff::core::plainText(failure.text) << "\n";
     return failure.exit_code;
   }
 }

@@ -60,7 +60,7 @@ void describeScenario(const session::SessionSetup& setup, const ValidateArgument
   for (const std::string& change : setup.import().changes) out << "  network: " << change << "\n";
   out << std::flush;
   for (const std::string& warning : warnings)
-    std::cerr << "cdiff: warning: " << options.name << ": " << warning << "\n";
+    std::cerr << "cdiff: warning: " << core::plainText(options.name + ": " + warning) << "\n";
 }
 
 /// Checks one scenario up to the session's start; returns whether it is good.

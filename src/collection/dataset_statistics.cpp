@@ -8,7 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "core/file.h"
+#include "core/json_file.h"
 #include "core/output_folder.h"
 #include "core/text.h"
 #include "diffusion/network/architecture.h"
@@ -152,7 +152,7 @@ std::string toJson(const DatasetStatistics& statistics) {
 
 DatasetStatistics readStatistics(const std::filesystem::path& file) {
   try {
-    const json text = json::parse(core::readFile(file, "statistics"));
+    const json text = core::readJson(file, "statistics");
     DatasetStatistics statistics;
     text.at("images").get_to(statistics.images);
     text.at("samples").get_to(statistics.samples);
@@ -166,7 +166,8 @@ DatasetStatistics readStatistics(const std::filesystem::path& file) {
     text.at("seconds").get_to(statistics.seconds);
     return statistics;
   } catch (const json::exception& error) {
-    throw core::InputError("statistics '" + file.string() + "': " + error.what());
+    throw core::InputError("'" + file.string() + "' holds no statistics of a session: " +
+                           core::jsonFault(error) + "; expected what cdiff collect writes");
   }
 }
 

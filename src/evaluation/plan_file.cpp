@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/host.h"
+#include "core/json_file.h"
 #include "core/output_folder.h"
 #include "core/text.h"
 #include "diffusion/network/cpu_denoiser.h"
@@ -65,7 +66,7 @@ PlanFile readPlan(const fs::path& results) {
                            "; expected the result folder of a batch that is under way");
   }
   try {
-    const auto json = nlohmann::json::parse(core::readFile(file, "plan"));
+    const auto json = core::readJson(file, "plan");
     PlanFile plan;
     plan.program = json.at("program_sha256");
     plan.instruction_sets = json.at("instruction_sets");
@@ -77,7 +78,7 @@ PlanFile readPlan(const fs::path& results) {
     return plan;
   } catch (const nlohmann::json::exception& error) {
     throw core::InputError(
-        "'" + file.string() + "' is no plan of a batch: " + error.what() +
+        "'" + file.string() + "' is no plan of a batch: " + core::jsonFault(error) +
         "; write it again with the command that planned it (cdiff evaluate: with --resume)");
   }
 }

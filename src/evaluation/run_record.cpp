@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/run_conditions.h"
@@ -108,6 +109,7 @@ const std::vector<std::string>& measureNames() {
 
 SummaryFacts readSummary(const std::string& text, const std::string& source) {
   try {
+    core::requireShallowJson(text, "'" + source + "'");
     const json summary = json::parse(text);
     if (summary.value(json::json_pointer("/steering/by_hand"), false))
       throw core::InputError("'" + source + "': the session was steered by hand");
@@ -128,7 +130,9 @@ SummaryFacts readSummary(const std::string& text, const std::string& source) {
     addSelectionMeasures(summary, facts.measures);
     return facts;
   } catch (const json::exception& error) {
-    throw core::InputError("'" + source + "' is no summary of a session: " + error.what());
+    throw core::InputError("'" + source +
+                           "' is no summary of a session: " + core::jsonFault(error) +
+                           "; expected the result of a session of this version");
   }
 }
 
@@ -240,16 +244,17 @@ std::string recordJson(const RunRecord& record) {
 std::optional<RunRecord> readRecord(const fs::path& file) {
   if (!fs::exists(file)) return std::nullopt;
   const std::string text = core::readFile(file, "record");
-  const auto fail = [&file](const std::exception& error) {
-    throw core::InputError("'" + file.string() + "' is no record of a run: " + error.what() +
+  const auto fail = [&file](const std::string& fault) {
+    throw core::InputError("'" + file.string() + "' is no record of a run: " + fault +
                            "; delete the file to have the run repeated");
   };
   try {
+    core::requireShallowJson(text, "the file");
     return fromJson(Json::parse(text));
   } catch (const Json::exception& error) {
-    fail(error);
+    fail(core::jsonFault(error));
   } catch (const core::InputError& error) {
-    fail(error);
+    fail(error.what());
   }
   return std::nullopt;
 }
@@ -289,6 +294,7 @@ std::string RunContact::partnerText() const {
 std::vector<RunContact> contactsIn(const std::string& text, const std::string& source) {
   std::vector<RunContact> contacts;
   try {
+    core::requireShallowJson(text, "'" + source + "'");
     const json summary = json::parse(text);
     for (const json& entry : summary.value(json::json_pointer("/ego/contacts"), json::array())) {
       contacts.push_back({entry.at("seconds"), entry.at("with"), entry.at("ego_at_fault"),
@@ -296,12 +302,15 @@ std::vector<RunContact> contactsIn(const std::string& text, const std::string& s
       if (entry.contains("with_cbv")) contacts.back().with_cbv = entry.at("with_cbv").get<bool>();
     }
   } catch (const json::exception& error) {
-    throw core::InputError("'" + source + "' is no summary of a session: " + error.what());
+    throw core::InputError("'" + source +
+                           "' is no summary of a session: " + core::jsonFault(error) +
+                           "; expected the result of a session of this version");
   }
   return contacts;
 }
 
 SummaryNumbers summaryNumbers(const std::string& text, const std::string& source) {
+  core::requireShallowJson(text, "'" + source + "'");
   const json summary = json::parse(text, nullptr, false);
   if (!summary.is_object()) {
     throw core::InputError("'" + source +

@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/file.h"
+#include "core/json_file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/run_record.h"
@@ -109,9 +109,11 @@ DrivenScene drivenScene(const std::string& planner, const BatchRun& run) {
   scene.rows = record::readTrace(run.folder / "trace.csv");
   const auto file = run.folder / "summary.json";
   try {
-    scene.touches = touchesIn(json::parse(core::readFile(file, "summary")), scene.rows);
+    scene.touches = touchesIn(core::readJson(file, "summary"), scene.rows);
   } catch (const json::exception& error) {
-    throw core::InputError("'" + file.string() + "' is no summary of a session: " + error.what());
+    throw core::InputError("'" + file.string() +
+                           "' is no summary of a session: " + core::jsonFault(error) +
+                           "; expected the result of a session of this version");
   }
   return scene;
 }

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -217,7 +218,7 @@ void SceneOptions::validate() const {
 SceneFacts readFacts(const fs::path& folder) {
   const std::string file = (folder / "summary.json").string();
   try {
-    const auto summary = nlohmann::json::parse(core::readFile(file, "summary"));
+    const auto summary = core::readJson(file, "summary");
     SceneFacts facts;
     facts.scenario = summary.at("scenario");
     facts.seed = summary.at("seed");
@@ -231,7 +232,8 @@ SceneFacts readFacts(const fs::path& folder) {
     takeContact(summary, facts);
     return facts;
   } catch (const nlohmann::json::exception& error) {
-    throw InputError("'" + file + "' is no summary of a session: " + error.what());
+    throw InputError("'" + file + "' is no summary of a session: " + core::jsonFault(error) +
+                     "; expected the result of a session of this version");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/samples/field.h"
@@ -69,7 +70,9 @@ Checkpoint readCheckpoint(const fs::path& path) {
   if (core::sha256(body) != content.substr(body.size()))
     throw InputError(name + ": the checksum at its end is not that of its content");
   ByteReader reader(body, name, kCheckpointMagic.size());
-  const json header = json::parse(reader.text(), nullptr, false);
+  const std::string_view text = reader.text();
+  core::requireShallowJson(text, name);
+  const json header = json::parse(text, nullptr, false);
   if (!header.is_object()) throw InputError(name + ": the header is not JSON");
   Checkpoint checkpoint;
   checkpoint.facts = header.at("facts");

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/disk_memory.h"
-#include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/stage_times.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -18,6 +17,7 @@
 #include "record/session_text.h"
 #include "record/session_yaml.h"
 #include "record/summary.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::page {
 namespace {
@@ -30,14 +30,6 @@ constexpr std::size_t kSummaryRoom = 1 << 16;
 constexpr std::size_t kJunitRoom = 1 << 14;
 /// From one time that the memory is settled to the next.
 constexpr std::uint64_t kTicksToSettle = 1000;
-
-/// A fault may hold what others say: safe to show, and not too long.
-traffic::Fault shown(const traffic::Fault& fault) {
-  constexpr std::size_t kMostSource = 100;  // [letters]
-  constexpr std::size_t kMostText = 1000;
-  return {fault.tick, core::cutText(fault.source, kMostSource),
-          core::cutText(fault.text, kMostText)};
-}
 
 }  // namespace
 
@@ -71,7 +63,8 @@ class ResultWriter::Record {
   void observe(const session::TickRecord& record) {
     const traffic::TrafficSnapshot& snapshot = *record.snapshot;
     result_.status = snapshot.status;
-    for (const traffic::Fault& fault : snapshot.faults) result_.faults.push_back(shown(fault));
+    for (const traffic::Fault& fault : snapshot.faults)
+      result_.faults.push_back(traffic::shownFault(fault));
     latencies_.observe(record.latencies);
     late_.observe(record.timings);
     if (last_tick_ && snapshot.tick <= *last_tick_)
@@ -131,7 +124,7 @@ class ResultWriter::Record {
 
   /// First, since the last one is why a session ended.
   void recordFault(const traffic::Fault& fault) {
-    result_.faults.insert(result_.faults.begin(), fault);
+    result_.faults.insert(result_.faults.begin(), traffic::shownFault(fault));
   }
 
   const metrics::TickMeasures& tickMeasures() const { return tick_measures_; }
@@ -189,7 +182,9 @@ class ResultWriter::Record {
                                 "the record ends while the session was still running"});
     }
     result_.measures = metrics_.measures();
-    const std::vector<traffic::Fault>& faults = result_.measures.faults;
+    std::vector<traffic::Fault> faults;
+    for (const traffic::Fault& fault : result_.measures.faults)
+      faults.push_back(traffic::shownFault(fault));
     result_.faults.insert(result_.faults.begin(), faults.begin(), faults.end());
     result_.latencies = latencies_.summaries();
     result_.late = late_.counts();

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <exception>
 
-#include "core/forked_work.h"
 #include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::planners {
 namespace {
@@ -24,7 +24,6 @@ std::vector<PlannedAction> planOne(PlannerBySlot::Member& member,
                                    const traffic::TrafficSnapshot& snapshot,
                                    const std::vector<PlanningTask>& tasks) {
   std::string fault = "the planner answered for other vehicles than it was asked for";
-  const core::NamedCall call("planner", member.name);
   try {
     std::vector<PlannedAction> actions = member.planner->plan(snapshot, tasks);
     const bool all = std::equal(actions.begin(), actions.end(), tasks.begin(), tasks.end(),
@@ -33,7 +32,7 @@ std::vector<PlannedAction> planOne(PlannerBySlot::Member& member,
                                 });
     if (all) return actions;
   } catch (const std::exception& error) {
-    fault = error.what();
+    fault = traffic::thrownFaultText(error);
   } catch (...) {
     fault = "the planner threw something that is no std::exception";
   }

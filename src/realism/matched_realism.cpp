@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/worker.h"
@@ -181,7 +181,7 @@ std::string scoreJson(const ContinuationScore& score) {
 
 ContinuationScore readScore(const fs::path& file) {
   try {
-    const json text = json::parse(core::readFile(file, "score"));
+    const json text = core::readJson(file, "score");
     ContinuationScore score;
     if (!text.at("hand_over_tick").is_null())
       score.hand_over_tick = text.at("hand_over_tick").get<std::uint64_t>();
@@ -194,7 +194,8 @@ ContinuationScore readScore(const fs::path& file) {
     }
     return score;
   } catch (const json::exception& error) {
-    throw InputError("'" + file.string() + "' is no score of cdiff realism: " + error.what());
+    throw InputError("'" + file.string() + "' is no score of cdiff realism: " +
+                     core::jsonFault(error) + "; delete the file to have its run repeated");
   }
 }
 

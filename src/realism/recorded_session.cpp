@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
@@ -131,7 +132,7 @@ void noteCountedContacts(const fs::path& file, std::uint64_t ticks, Recording& r
   using nlohmann::json;
   if (!core::isFile(file)) return;
   try {
-    const json summary = json::parse(core::readFile(file, "summary"));
+    const json summary = core::readJson(file, "summary");
     for (const json& contact : summary.at("ego").at("contacts")) {
       const std::size_t step = contact.at("tick").get<std::uint64_t>() / ticks;
       noteContact(traffic::kEgoId, step, recording);
@@ -143,7 +144,8 @@ void noteCountedContacts(const fs::path& file, std::uint64_t ticks, Recording& r
       noteContact(selection.at("vehicle_id"), released.get<std::uint64_t>() / ticks, recording);
     }
   } catch (const json::exception& error) {
-    throw InputError("'" + file.string() + "' is no summary of a session: " + error.what());
+    throw InputError("'" + file.string() + "' is no summary of a session: " +
+                     core::jsonFault(error) + "; expected the result of a session of this version");
   }
 }
 

@@ -62,7 +62,8 @@ TraceWriter::TraceWriter(core::OutputFolder& folder) : file_(folder, "trace.csv"
 
 void TraceWriter::write(const traffic::TrafficSnapshot& snapshot) {
   appendTraceRows(buffer_, snapshot);
-  if (buffer_.size() >= kBufferSize) flush();
+  const bool begins = snapshot.tick == 1;  // scripts/session sees by the file that a session drives
+  if (begins || buffer_.size() >= kBufferSize) flush();
 }
 
 std::string TraceWriter::finish() {

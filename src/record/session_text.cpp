@@ -126,10 +126,11 @@ namespace {
 
 constexpr std::size_t kNameWidth = 24;
 
+/// Names and values may be those of plug-ins, nodes and files of others.
 std::string row(const std::string& name, const std::string& value) {
   std::string text = "  " + name;
   text.resize(std::max(text.size() + 1, kNameWidth + 2), ' ');
-  return text + value + "\n";
+  return core::plainText(text + value) + "\n";
 }
 
 std::string holdUpRow(const SessionResult& result) {

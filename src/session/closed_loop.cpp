@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::session {
 namespace {
@@ -93,12 +94,12 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner,
     if (!answersAll(actions, tasks))
       fault = "the planner answered for other vehicles than it was asked for";
   } catch (const std::exception& error) {
-    fault = error.what();
-    if (fault.empty()) fault = "the planner threw an exception without a text";
+    fault = traffic::thrownFaultText(error);
   } catch (...) {
     fault = "the planner threw something that is no std::exception";
   }
   milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  for (PlannedAction& action : actions) action.fault = traffic::shownFaultText(action.fault);
   return fault.empty() ? actions : failSafe(tasks);
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -170,9 +171,10 @@ std::vector<double> fromCase(const json& entry, const std::string& place) {
 std::vector<double> fromJson(const std::string& text, const std::string& file) {
   json document;
   try {
+    core::requireShallowJson(text, file);
     document = json::parse(text);
   } catch (const json::exception& error) {
-    throw InputError(file + ": not JSON: " + error.what());
+    throw InputError(file + ": not JSON: " + core::jsonFault(error));
   }
   const auto cases = document.find("cases");
   if (cases == document.end() || !cases->is_array())

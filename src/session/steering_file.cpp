@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -24,14 +25,14 @@ traffic::SteeringChange changeOf(const json& entry) {
 std::vector<SteeringEntry> recordedSteering(const fs::path& summary) {
   const std::string place = "'" + summary.string() + "'";
   try {
-    const json steering = json::parse(core::readFile(summary, "summary")).at("steering");
+    const json steering = core::readJson(summary, "summary").at("steering");
     if (steering.at("paced_by_wall_clock").get<bool>()) refusePaced(summary);
     std::vector<SteeringEntry> entries;
     for (const json& change : steering.at("changes"))
       entries.push_back(entryOf(changeOf(change), change.at("seconds").get<double>()));
     return entries;
   } catch (const json::exception& error) {
-    throw InputError(place + ": no steering can be read from it: " + error.what() +
+    throw InputError(place + ": no steering can be read from it: " + core::jsonFault(error) +
                      "; expected the summary.json of a session of this version");
   }
 }
@@ -78,11 +79,13 @@ SteeredSession steeredSession(const fs::path& source) {
   const fs::path summary = core::isFolder(source) ? source / kSummary : source;
   if (summary.extension() != ".json") return {};
   try {
-    const json record = json::parse(core::readFile(summary, "summary"));
+    const json record = core::readJson(summary, "summary");
     return {record.value("scenario", ""), record.value("seed", std::int64_t{0}),
             versionIn(summary.parent_path() / "session.yaml")};
   } catch (const json::exception& error) {
-    throw InputError("'" + summary.string() + "': it is no summary of a session: " + error.what());
+    throw InputError("'" + summary.string() +
+                     "': it is no summary of a session: " + core::jsonFault(error) +
+                     "; expected the summary.json of a session of this version");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "session/driven_vehicles.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::session {
 namespace {
@@ -157,14 +158,14 @@ void World::placeEgo() {
 }
 
 void World::recordFault(const std::string& source, const std::string& text) {
-  pending_faults_.push_back({snapshot_.tick, source, text});
+  pending_faults_.push_back(traffic::shownFault({snapshot_.tick, source, text}));
 }
 
 void World::end(SessionStatus status, const traffic::Fault& fault) {
   if (snapshot_.status != SessionStatus::kRunning) {
     if (status != SessionStatus::kError) return;
     snapshot_.status = status;
-    snapshot_.faults.push_back(fault);
+    snapshot_.faults.push_back(traffic::shownFault(fault));
     return;
   }
   snapshot_.tick += 1;
@@ -175,7 +176,7 @@ void World::end(SessionStatus status, const traffic::Fault& fault) {
   snapshot_.steering.clear();
   snapshot_.status = status;
   snapshot_.faults = std::move(pending_faults_);
-  snapshot_.faults.push_back(fault);
+  snapshot_.faults.push_back(traffic::shownFault(fault));
   pending_faults_.clear();
   control_.end();
 }

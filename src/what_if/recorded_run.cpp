@@ -7,6 +7,7 @@
 
 #include "core/csv.h"
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "record/result_folder.h"
@@ -78,7 +79,7 @@ void RecordedRun::readSession() {
 void RecordedRun::readSummary() {
   const std::string file = (folder_ / "summary.json").string();
   try {
-    const auto summary = nlohmann::json::parse(core::readFile(file, "summary"));
+    const auto summary = core::readJson(file, "summary");
     trace_sha256_ = summary.at("trace_sha256");
     const std::string status = summary.at("status");
     if (status == "error")
@@ -90,7 +91,8 @@ void RecordedRun::readSummary() {
                            contact.at("with"), contact.at("ego_side")});
     }
   } catch (const nlohmann::json::exception& error) {
-    throw InputError("'" + file + "' is no summary of a session: " + error.what());
+    throw InputError("'" + file + "' is no summary of a session: " + core::jsonFault(error) +
+                     "; expected the result of a session of this version");
   }
 }
 

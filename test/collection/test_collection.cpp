@@ -7,11 +7,15 @@
 
 #include "collection/collection_loop.h"
 #include "collection/collection_options.h"
+#include "collection/dataset_statistics.h"
 #include "collection/displaced_samples.h"
 #include "collection/traffic_driver.h"
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "support/error_text.h"
 #include "support/network_text.h"
 #include "support/snapshot_builder.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::collection {
 namespace {
@@ -406,6 +410,18 @@ TEST(CollectionScenario, RoutesOfBench2DriveAreRefused) {
     FAIL() << "nothing was thrown";
   } catch (const core::InputError& error) {
     EXPECT_NE(std::string(error.what()).find("are for evaluation"), std::string::npos);
+  }
+}
+
+TEST(DatasetStatistics, AFileThatHoldsNoneIsNamedInPlainWords) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "statistics.json";
+  for (const std::string& text : {std::string("{"), std::string("{}"), std::string("[1]"),
+                                  std::string(300000, '[') + std::string(300000, ']')}) {
+    core::writeFileAtomically(file, text);
+    const std::string error = test::errorOf([&] { readStatistics(file); });
+    EXPECT_NE(error.find(file.string()), std::string::npos) << error;
+    EXPECT_EQ(error.find("json.exception"), std::string::npos) << error;
   }
 }
 

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/run_record.h"
+#include "support/error_text.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -48,6 +50,21 @@ TEST(RunMeasures, OfASummary) {
 TEST(RunMeasures, RefuseATextThatIsNoSummary) {
   EXPECT_THROW(readSummary("{\"status\": \"comp", "file"), core::InputError);
   EXPECT_THROW(readSummary("{}", "file"), core::InputError);
+}
+
+TEST(RunMeasures, NameAFileThatIsNoSummaryInPlainWords) {
+  std::string deep;
+  for (int i = 0; i < 300000; ++i) deep += R"({"ego":)";
+  for (const std::string& text : {std::string("{"), std::string(R"({"ego": {"contacts": [1]}})"),
+                                  std::string(R"({"ego": {"contacts": 7}})"), deep}) {
+    for (const auto& read : {std::function<void()>([&] { readSummary(text, "the/file"); }),
+                             std::function<void()>([&] { contactsIn(text, "the/file"); })}) {
+      const std::string error = test::errorOf(read);
+      EXPECT_EQ(error.find("json.exception"), std::string::npos) << error;
+      EXPECT_NE(error.find("the/file"), std::string::npos) << error;
+    }
+  }
+  EXPECT_THROW(summaryNumbers(deep, "the/file"), core::InputError);
 }
 
 TEST(RunMeasures, NoneOfASessionThatWasSteeredByHand) {

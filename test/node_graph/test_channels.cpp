@@ -212,6 +212,22 @@ TEST(TickMessages, AnAnswerBecomesMessagesAndComesBack) {
   EXPECT_FALSE(readAnswer(messages, 0, "bg_7", reading).has_value());
 }
 
+TEST(TickMessages, WhatAPlannerOfOthersIsCalledAndSaysIsCutAndMadePlain) {
+  const std::string loud = "\033[31m" + std::string(1'000'000, 'x');
+  const auto control = test::controlFor(4, kEgoSlot, "ego");
+  control->planner = loud;
+  control->fault = loud;
+  TickMessages messages;
+  messages.add(ChannelId::kEgoControl, control);
+  const auto answer = readAnswer(messages, kEgoSlot, "ego", TickReading());
+  ASSERT_TRUE(answer.has_value());
+  for (const std::string& text : {answer->planner, answer->fault, answer->action.fault}) {
+    EXPECT_GT(text.size(), 10U);
+    EXPECT_LT(text.size(), 10000U);
+    EXPECT_EQ(text.find('\033'), std::string::npos);
+  }
+}
+
 /// A rig of two cameras of 2 x 1 pixels for the CBVs.
 session::VehicleRigs twoCameras() {
   session::ScenarioOptions options;

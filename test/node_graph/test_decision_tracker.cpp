@@ -142,6 +142,23 @@ TEST_F(LateSession, RecordSaysWhatDroveAndHowLateTheAnswerCame) {
   EXPECT_NE(texts.at({"cbv:sample", true}).find("came 0.030 s after its time"), std::string::npos);
 }
 
+TEST_F(LateSession, RecordCutsWhatAPlannerOfOthersIsCalledAndSays) {
+  tracker_.open(snapshotAt(4));
+  arrive(DecisionTracker::kSelection, 4, 10.01);
+  arrive(1, 4, 10.02);
+  const auto control = controlFor(4, -1, "ego");
+  control->planner = control->fault = std::string(1'000'000, 'x');
+  answers_.add(ChannelId::kEgoControl, control);
+  tracker_.arrived(-1, 4, 10.02);
+  const auto records = end(4, 10.05);
+  ASSERT_EQ(records.size(), 1U);
+  const msgs::ControlAction& answer = records[0]->vehicles[0].answer;
+  for (const std::string& text : {answer.planner, answer.fault}) {
+    EXPECT_GT(text.size(), 10U);
+    EXPECT_LT(text.size(), 10000U);
+  }
+}
+
 TEST_F(LateSession, DecisionThatAPlannerLeftOutIsSettledByItsNextAnswer) {
   tracker_.open(snapshotAt(4));
   arrive(DecisionTracker::kSelection, 4, 10.01);

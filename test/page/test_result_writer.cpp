@@ -133,6 +133,26 @@ TEST(ResultWriter, WhatOthersSayIsCutAndSafeToShow) {
   EXPECT_LT(fault["text"].get<std::string>().size(), 1100U);
 }
 
+TEST(ResultWriter, ItsTableIsSafeToShow) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample(test::sampleOptions());
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 120, SessionStatus::kTimedOut);
+  traffic::TrafficSnapshot snapshot;
+  snapshot.status = SessionStatus::kTimedOut;
+  session::TickRecord record;
+  record.snapshot = &snapshot;
+  record.latencies = {{"ego:my\033[31mego", 1.0}};
+  writer.observe(record);
+  writer.recordFault({3, "recorder", "\033[31m" + std::string(100000, 'x')});
+  writer.finish(2.0);
+  EXPECT_EQ(writer.table().find('\033'), std::string::npos) << writer.table();
+  EXPECT_NE(writer.table().find("ego:my\xEF\xBF\xBD[31mego"), std::string::npos) << writer.table();
+  const std::string text = summaryOf(scratch)["faults"][0]["text"];
+  EXPECT_EQ(text.rfind("\xEF\xBF\xBD[31mx", 0), 0U);
+  EXPECT_LT(text.size(), 1100U);
+}
+
 TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <functional>
 #include <future>
+#include <new>
 #include <stdexcept>
 #include <thread>
 #include <tuple>
@@ -216,6 +217,46 @@ TEST(DecisionCycle, SoIsOneThatThrowsWhatIsNoException) {
   const Record record = cycle.run();
   EXPECT_EQ(record.actions[0][1].action, traffic::ControlAction::failSafe());
   EXPECT_NE(record.actions[0][1].fault.find("no std::exception"), std::string::npos);
+}
+
+/// What a fault's text of 10 MB with a control character becomes.
+void expectShort(const std::string& text) {
+  EXPECT_GT(text.size(), 100U);
+  EXPECT_LT(text.size(), 10000U);
+  EXPECT_EQ(text.find('\033'), std::string::npos);
+}
+
+TEST(DecisionCycle, WhatAPlannerSaysOfAFaultIsCutAndMadePlain) {
+  const std::string loud = "\033[31m" + std::string(10'000'000, 'x');
+  Cycle cycle;
+  cycle.parts.cbv_planner = {
+      std::make_unique<Braking>([&](const PlanningTask&) { throw std::runtime_error(loud); })};
+  class Reasoning : public Braking {
+   public:
+    explicit Reasoning(std::string reason) : reason_(std::move(reason)) {}
+    std::vector<PlannedAction> plan(const traffic::TrafficSnapshot& snapshot,
+                                    const std::vector<PlanningTask>& tasks) override {
+      std::vector<PlannedAction> actions = Braking::plan(snapshot, tasks);
+      for (PlannedAction& action : actions) action.fault = reason_;
+      return actions;
+    }
+
+   private:
+    std::string reason_;
+  };
+  cycle.parts.ego_planner = {std::make_unique<Reasoning>(loud)};
+  const Record record = cycle.run();
+  for (const PlannedAction& action : record.actions[0]) expectShort(action.fault);
+}
+
+TEST(DecisionCycle, MemoryThatRanOutIsExplained) {
+  Cycle cycle;
+  cycle.parts.cbv_planner = {
+      std::make_unique<Braking>([](const PlanningTask&) { throw std::bad_alloc(); })};
+  const Record record = cycle.run();
+  EXPECT_EQ(record.actions[0][1].action, traffic::ControlAction::failSafe());
+  EXPECT_EQ(record.actions[0][1].fault.find("bad_alloc"), std::string::npos);
+  EXPECT_NE(record.actions[0][1].fault.find("memory"), std::string::npos);
 }
 
 TEST(DecisionCycle, ImagesAreThoseOfPlannersThatSeeAndThoseWishedFor) {

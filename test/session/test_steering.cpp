@@ -12,6 +12,7 @@
 #include "session/scenario_options.h"
 #include "session/session_request.h"
 #include "session/steering_file.h"
+#include "support/error_text.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::session {
@@ -166,6 +167,24 @@ TEST_F(SteeringFile, WhatHoldsNoneIsRefused) {
   EXPECT_THROW(readSteering(folder_.path() / "none.json"), core::InputError);
   std::ofstream(folder_.path() / "summary.json") << "{}";
   EXPECT_THROW(readSteering(folder_.path()), core::InputError);
+}
+
+TEST_F(SteeringFile, WhatIsNoSummaryIsNamedInPlainWords) {
+  std::string deep = R"({"steering": )";
+  for (int i = 0; i < 300000; ++i) deep += "[";
+  const auto file = folder_.path() / "summary.json";
+  for (const std::string& text :
+       {deep + std::string(300000, ']') + "}", std::string("{}"), std::string("{"),
+        std::string(R"({"steering": 1})"), std::string(R"({"scenario": 1, "steering": []})")}) {
+    std::ofstream(file) << text;
+    const std::string error = test::errorOf([&] { readSteering(folder_.path()); });
+    EXPECT_NE(error.find(file.string()), std::string::npos) << error;
+    EXPECT_EQ(error.find("json.exception"), std::string::npos) << error;
+  }
+  std::ofstream(file) << R"({"scenario": 1})";
+  const std::string error = test::errorOf([&] { steeredSession(file); });
+  EXPECT_NE(error.find(file.string()), std::string::npos) << error;
+  EXPECT_EQ(error.find("json.exception"), std::string::npos) << error;
 }
 
 }  // namespace

@@ -256,6 +256,21 @@ TEST(World, AVehicleThatFindsNoRoomIsAFaultAndNoChange) {
   EXPECT_EQ(world->snapshot().faults[0].source, "steering");
 }
 
+TEST(World, WhatOthersSayOfAFaultIsCutAndMadePlain) {
+  ScriptedSession scripted;
+  const auto world = scripted.makeWorld();
+  const std::string loud = "\033[31m" + std::string(1'000'000, 'x');
+  world->recordFault(loud, loud);
+  world->end(traffic::SessionStatus::kError, {0, loud, loud});
+  ASSERT_EQ(world->snapshot().faults.size(), 2U);
+  for (const traffic::Fault& fault : world->snapshot().faults) {
+    for (const std::string& text : {fault.source, fault.text}) {
+      EXPECT_LT(text.size(), 10000U);
+      EXPECT_EQ(text.find('\033'), std::string::npos);
+    }
+  }
+}
+
 TEST(World, ASessionThatEndedIsOverForWhoSteers) {
   ScriptedSession scripted;
   const auto world = scripted.makeWorld();

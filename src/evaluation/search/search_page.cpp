@@ -8,6 +8,7 @@
 
 #include "core/csv.h"
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/output_folder.h"
 #include "core/text.h"
 #include "evaluation/worker.h"
@@ -47,7 +48,9 @@ std::string eventText(const SearchCase& one) {
 std::string traceOf(const SearchCase& one, const fs::path& results) {
   if (!one.record.complete()) return "";
   const fs::path file = runFolder(results, one.id) / "summary.json";
-  const auto summary = nlohmann::json::parse(core::readFile(file, "summary"), nullptr, false);
+  const std::string text = core::readFile(file, "summary");
+  core::requireShallowJson(text, "summary '" + file.string() + "'");
+  const auto summary = nlohmann::json::parse(text, nullptr, false);
   return summary.is_object() ? summary.value("trace_sha256", "") : "";
 }
 

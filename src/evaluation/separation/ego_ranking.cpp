@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
@@ -52,7 +53,7 @@ void addAnswers(const fs::path& folder, const std::string& trace_sha256, EgoRun&
     if (entry.path().extension() == ".json") files.insert(entry.path());
   }
   for (const fs::path& file : files) {
-    const json answer = json::parse(core::readFile(file, "answer"));
+    const json answer = core::readJson(file, "answer");
     if (answer.at("trace_sha256") != trace_sha256 || !answer.contains("contact")) continue;
     const std::size_t number = answer.at("contact").at("number");
     if (number < 1 || number > run.contacts.size()) continue;
@@ -140,7 +141,8 @@ EgoRun checkedRun(const fs::path& folder, const fs::path& base) {
     return readRun(folder, base);
   } catch (const json::exception& error) {
     throw core::InputError("'" + folder.string() +
-                           "' holds a damaged result of a session: " + error.what());
+                           "' holds a damaged result of a session: " + core::jsonFault(error) +
+                           "; drive the session again, or move the folder elsewhere");
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/guarded_process.h"
+#include "core/json_file.h"
 #include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -106,7 +107,7 @@ namespace {
 
 /// Throws json::exception for a file that is none of ours.
 nlohmann::json engineIn(const fs::path& results) {
-  return nlohmann::json::parse(core::readFile(results / kEngineFile, "engine"));
+  return core::readJson(results / kEngineFile, "engine");
 }
 
 /// Whether the jobs work on another folder, of which this one is a copy.
@@ -140,7 +141,8 @@ std::string readJobName(const fs::path& results) {
                              engine.at("results").get<std::string>() + "'");
     return engine.at("job_name");
   } catch (const nlohmann::json::exception& error) {
-    throw core::InputError("'" + file.string() + "' names no jobs: " + error.what());
+    throw core::InputError("'" + file.string() + "' names no jobs: " + core::jsonFault(error) +
+                           "; submit the batch again");
   }
 }
 

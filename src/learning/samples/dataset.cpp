@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/json_file.h"
 #include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
@@ -35,6 +36,7 @@ ShardHeader readShardHeader(std::uint32_t version, const std::string& text,
                      ", this program reads 1 to " + std::to_string(kShardVersion));
   }
   const char* const schema_key = version == 1 ? "schema" : "fields";
+  core::requireShallowJson(text, source);
   const json object = json::parse(text, nullptr, false);
   if (!object.is_object() || !object.contains(schema_key) || !object.contains("samples") ||
       !object["samples"].is_number_unsigned()) {

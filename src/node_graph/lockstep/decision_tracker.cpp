@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "node_graph/messages/topics.h"
 #include "node_graph/messages/traffic_conversions.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -42,6 +43,8 @@ msgs::ControlAction completed(const msgs::ControlAction& control, const Key& key
   answer.tick = snapshot.tick;
   answer.slot = key.first;
   answer.vehicle_id = key.second;
+  answer.fault = traffic::shownFaultText(control.fault);
+  answer.planner = traffic::shownSource(control.planner);
   if (answer.planner.empty())
     answer.planner = key.first == kEgoSlot ? "ego:external" : "cbv:external";
   return answer;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 
+#include "core/markup.h"
 #include "core/text.h"
 #include "node_graph/bags/replay.h"
 #include "node_graph/lockstep/node_process.h"
@@ -47,7 +48,7 @@ Participant::Participant(StopSignal& stop) : stop_(stop), name_(baseName(nodeNam
   acks_ = connections_.advertise<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
                                                 {kTrafficSimulatorNode});
   gate_.setReport([this](const std::string& text) {
-    ROS_WARN("%s: %s", name_.c_str(), text.c_str());
+    ROS_WARN("%s: %s", name_.c_str(), core::plainText(text).c_str());
     publishAck(msgs::TickAck::FAULT, lastTick(), text);
   });
   heartbeat_input_ = gate_.subscribe<msgs::Heartbeat>(
@@ -233,7 +234,7 @@ void Participant::endSilentSimulator() {
 }
 
 int Participant::fail(const std::string& text) {
-  ROS_ERROR("%s: %s", name_.c_str(), text.c_str());
+  ROS_ERROR("%s: %s", name_.c_str(), core::plainText(text).c_str());
   const ros::SteadyTime limit = ros::SteadyTime::now() + ros::WallDuration(kFarewell);
   while (ros::ok() && !simulatorGone() && ros::SteadyTime::now() < limit) {
     publishAck(msgs::TickAck::ERROR, lastTick(), text);

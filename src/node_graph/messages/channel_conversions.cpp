@@ -12,6 +12,7 @@
 #include "node_graph/messages/traffic_conversions.h"
 #include "sensor_msgs/distortion_models.h"
 #include "sensor_msgs/image_encodings.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -193,10 +194,11 @@ void takeControl(const TakenMessage& taken, const TickReading&, Answer& answer) 
   answer.action = fromMsg(*control);
   answer.action.slot = slot;
   answer.action.vehicle_id = vehicle_id;
-  answer.planner = control->planner;
+  answer.action.fault = traffic::shownFaultText(control->fault);
+  answer.planner = traffic::shownSource(control->planner);
   if (answer.planner.empty()) answer.planner = slot == kEgoSlot ? "ego:external" : "cbv:external";
   answer.latency_ms = control->planner_latency_ms;
-  answer.fault = control->fault;
+  answer.fault = answer.action.fault;
 }
 
 void takeRollout(const TakenMessage& taken, const TickReading&, Answer& answer) {

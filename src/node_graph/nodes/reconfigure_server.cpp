@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
@@ -96,7 +97,8 @@ bool ReconfigureServer::set(Event& event) {
       control_.ask(
           {"node " + event.getCallerName(), known->what, core::formatNumber(wanted.value)});
     } catch (const core::InputError& error) {
-      ROS_WARN("%s of %s: %s", wanted.name.c_str(), event.getCallerName().c_str(), error.what());
+      ROS_WARN("%s of %s: %s", wanted.name.c_str(), event.getCallerName().c_str(),
+               core::plainText(error.what()).c_str());
     }
   }
   event.getResponse().config = values();

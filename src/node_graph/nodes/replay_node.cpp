@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/markup.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/DeleteEntity.h"
@@ -130,7 +131,7 @@ void ReplayNode::advertise() {
     if (!replayed(row, graph_)) continue;
     for (const Topic& topic : topicsOf(row, graph_)) offer(topic);
   }
-  gate_.setReport([](const std::string& text) { ROS_WARN("%s", text.c_str()); });
+  gate_.setReport([](const std::string& text) { ROS_WARN("%s", core::plainText(text).c_str()); });
   acks_ = gate_.subscribe<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
                                          {siblingNode(kMetricsNode)},
                                          [this](const auto& ack) { participants_.note(*ack); });
@@ -181,7 +182,8 @@ void ReplayNode::publishPlans(const msgs::TrafficSnapshot& snapshot) {
 
 bool ReplayNode::disturbed() {
   if (participants_.error())
-    ROS_ERROR("%s: %s", participants_.error()->node.c_str(), participants_.error()->text.c_str());
+    ROS_ERROR("%s: %s", participants_.error()->node.c_str(),
+              core::plainText(participants_.error()->text).c_str());
   if (connections_.hasLeft(kMetricsNode)) ROS_ERROR("the metrics node left the replay");
   failed_ = participants_.error() || connections_.hasLeft(kMetricsNode);
   return failed_ || stop_.raised() || !ros::ok();
@@ -264,7 +266,7 @@ void ReplayNode::publishInterruption() {
 
 int ReplayNode::finish() {
   for (const std::string& finding : session_.findings())
-    ROS_WARN("bag '%s': %s", bag_.c_str(), finding.c_str());
+    ROS_WARN("bag '%s': %s", bag_.c_str(), core::plainText(finding).c_str());
   if (!failed_ && (stop_.raised() || !ros::ok())) return core::ExitCode::kInterrupted;
   if (!failed_ && session_.findings().empty()) {
     endLaunch(stop_);

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/markup.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/messages/map_markers.h"
@@ -49,7 +50,7 @@ void SceneNode::takeSession(const msgs::SessionInfo& info) {
   try {
     setup_ = setupOf(info);
   } catch (const core::InputError& error) {
-    ROS_ERROR("the session cannot be shown: %s", error.what());
+    ROS_ERROR("the session cannot be shown: %s", core::plainText(error.what()).c_str());
     return;
   }
   markers_ = std::make_unique<SessionMarkers>(*setup_);
@@ -84,7 +85,7 @@ void SceneNode::takeTraffic(const msgs::TrafficSnapshot& message) {
     markers_->note(last_);
     if (message.decision_tick || final) show();
   } catch (const core::InputError& error) {
-    ROS_ERROR_THROTTLE(1.0, "a tick cannot be shown: %s", error.what());
+    ROS_ERROR_THROTTLE(1.0, "a tick cannot be shown: %s", core::plainText(error.what()).c_str());
   }
 }
 
