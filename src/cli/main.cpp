@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/plugin_guard.h"
 #include "cli/refused_arguments.h"
 #include "core/guarded_process.h"
 #include "core/program.h"
@@ -88,10 +89,11 @@ void requireKnownCommand(const CLI::App& program, int argc, char** argv) {
 }
 
 /// Every command but these knows the planners, objectives and metrics of plug-ins; `doctor` says
-/// what is wrong with them.
-void loadPluginsFor(int argc, char** argv) {
+/// what is wrong with them. Whether there are any.
+bool loadPluginsFor(int argc, char** argv) {
   const std::string first = argc < 2 ? "" : argv[1];
-  if (first != "doctor" && !first.empty() && first.front() != '-') cdiff::plugins::loadPlugins();
+  if (first == "doctor" || first.empty() || first.front() == '-') return false;
+  return !cdiff::plugins::loadPlugins().empty();
 }
 
 }  // namespace
@@ -104,15 +106,17 @@ int main(int argc, char** argv) {
                            "Print version, revision, SUMO's version and instruction sets");
   int exit_code = cdiff::cli::ExitCode::kPassed;
   addCommands(program, exit_code);
-  return cdiff::core::reportFailure([&] {
+  const auto command = [&] {
     try {
-      requireKnownCommand(program, argc, argv);
-      loadPluginsFor(argc, argv);
       program.parse(argc, argv);
       return exit_code;
     } catch (const CLI::ParseError& error) {
       if (error.get_exit_code() == 0) return program.exit(error);
       throw cdiff::core::InputError(cdiff::cli::refusalText(program, "cdiff", error));
     }
+  };
+  return cdiff::core::reportFailure([&] {
+    requireKnownCommand(program, argc, argv);
+    return loadPluginsFor(argc, argv) ? cdiff::cli::runBesidePlugins(command) : command();
   });
 }

@@ -17,6 +17,7 @@
 #include <optional>
 #include <sstream>
 
+#include "core/forked_work.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -43,12 +44,6 @@ std::optional<std::string> receiveMessage(int socket) {
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return std::nullopt;
   message.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
   return message;
-}
-
-/// Of this process.
-std::size_t threadCount() {
-  const std::filesystem::directory_iterator threads("/proc/self/task");
-  return static_cast<std::size_t>(std::distance(begin(threads), end(threads)));
 }
 
 /// Starts this program again in the present process; returns only where that fails.

@@ -2,20 +2,26 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "core/forked_work.h"
 
+#include <pthread.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <new>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "core/guarded_process.h"
 #include "core/program.h"
@@ -26,6 +32,7 @@ namespace cdiff::core {
 namespace {
 
 constexpr double kStopPatience = 10.0;  // [s] for a call that goes on when a stop signal comes
+constexpr double kSameStop = 0.5;  // [s]: a terminal and a parent process may both send a signal
 constexpr std::chrono::milliseconds kLookPeriod{10};
 
 std::int64_t steadyNow() {
@@ -38,8 +45,9 @@ double secondsFrom(std::int64_t begin) { return 1e-9 * static_cast<double>(stead
 struct SharedState {
   std::atomic<bool> returned{false};
   std::atomic<WorkStage> stage{WorkStage::kNothing};
-  std::atomic<std::int64_t> since{0};  ///< of a limited call [ns of the steady clock]; 0: none
-  std::array<char, 256> call{};        ///< "KIND:NAME"; empty: none
+  std::atomic<std::int64_t> since{0};  ///< of the call [ns of the steady clock]; 0: none
+  std::atomic<NamedCall::Limit> limit{NamedCall::Limit::kNone};
+  std::array<char, 256> call{};  ///< "KIND:NAME"; empty: none
 };
 
 // Global, because a call has no other way to reach it; null where nobody waits for this process.
@@ -47,9 +55,17 @@ SharedState* shared_state = nullptr;
 /// Whether this thread is the one that says what it calls.
 thread_local bool names_calls = false;
 
-void setCall(const std::string& call, std::int64_t since) {
+/// In every other copy of this process: nobody waits for its calls.
+void forgetWaiting() {
+  shared_state = nullptr;
+  names_calls = false;
+}
+
+void setCall(const std::string& call, std::int64_t since, NamedCall::Limit limit) {
+  shared_state->since = 0;
   std::array<char, 256>& text = shared_state->call;
   text[call.copy(text.data(), text.size() - 1)] = '\0';
+  shared_state->limit = limit;
   shared_state->since = since;
 }
 
@@ -95,6 +111,7 @@ class Waiting {
     const int status = waitForStatus();
     WorkEnd end;
     end.stage = state_.stage;
+    end.interrupted = stops_ > 0 || stop_;
     if (state_.returned && WIFEXITED(status)) {
       end.exit_code = WEXITSTATUS(status);
       return end;
@@ -102,11 +119,12 @@ class Waiting {
     end.how = !how_.empty()         ? how_
               : WIFSIGNALED(status) ? signalText(WTERMSIG(status))
                                     : "exit code " + std::to_string(WEXITSTATUS(status));
+    if (how_.empty() && isStopped(status)) end.interrupted = true;
+    if (how_.empty() && (isStopped(status) || isKilled(status))) return end;
     const std::string call = state_.call.data();
     const std::size_t colon = call.find(':');
     end.kind = call.substr(0, colon);
     if (colon != std::string::npos) end.name = call.substr(colon + 1);
-    end.interrupted = stops_ > 0;
     return end;
   }
 
@@ -117,23 +135,52 @@ class Waiting {
     pid_t ended = 0;
     while ((ended = ::waitpid(child_, &status, WNOHANG)) == 0) {
       if (stop_) passOn();
-      if (how_.empty() && state_.since != 0) endLateCall();
+      if (how_.empty()) endWhatGoesOn();
       std::this_thread::sleep_for(kLookPeriod);
     }
     return ended == child_ ? status : W_EXITCODE(ExitCode::kRunTimeError, 0);
   }
 
+  /// By a stop signal, which ends a program that does not catch it with this exit code.
+  static bool isStopped(int status) {
+    if (WIFEXITED(status)) return WEXITSTATUS(status) == ExitCode::kInterrupted;
+    const std::vector<int> signals = stopSignals();
+    return std::count(signals.begin(), signals.end(), WTERMSIG(status)) > 0;
+  }
+
+  /// By a signal that comes from outside alone.
+  static bool isKilled(int status) {
+    return WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGXCPU);
+  }
+
   void passOn() {
     catchStopSignals();  // clears `stop_`, for the next signal
-    if (++stops_ == 1) stopped_at_ = steadyNow();
+    const bool again = stops_ > 0 && secondsFrom(stopped_at_) > kSameStop;
+    if (stops_ == 0) stopped_at_ = steadyNow();
+    if (stops_ == 0 || again) ++stops_;
     ::kill(child_, SIGINT);
   }
 
-  void endLateCall() {
-    const double late = secondsFrom(state_.since);
-    const bool given_up = stops_ > 1 || (stops_ == 1 && secondsFrom(stopped_at_) > kStopPatience);
-    if (late <= call_limit_ && !given_up) return;
-    how_ = "no answer for " + formatFixed(late, 0) + " s";
+  bool isGivenUp() const {
+    return stops_ > 1 || (stops_ == 1 && secondsFrom(stopped_at_) > kStopPatience);
+  }
+
+  void endWhatGoesOn() {
+    using Limit = NamedCall::Limit;
+    const std::int64_t since = state_.since;
+    const Limit limit = since == 0 ? Limit::kNone : state_.limit.load();
+    if (state_.since != since) return;  // another call has begun
+    const double seconds = since == 0 ? 0.0 : secondsFrom(since);
+    const bool late = limit == Limit::kOfTheWork && seconds > call_limit_;
+    if (late || (limit != Limit::kNone && isGivenUp())) {
+      endNow("no answer for " + formatFixed(seconds, 0) + " s");
+    } else if (state_.stage == WorkStage::kResultWritten && isGivenUp()) {
+      endNow("it did not end when it was stopped");
+    }
+  }
+
+  void endNow(std::string how) {
+    how_ = std::move(how);
     ::kill(child_, SIGKILL);
   }
 
@@ -152,19 +199,27 @@ NamedCall::NamedCall(const char* kind, const std::string& name, Limit limit) {
   if (!names_calls) return;
   before_ = shared_state->call.data();
   since_before_ = shared_state->since;
-  setCall(std::string(kind) + ":" + name, limit == Limit::kNone ? 0 : steadyNow());
+  limit_before_ = shared_state->limit;
+  setCall(std::string(kind) + ":" + name, steadyNow(), limit);
 }
 
 NamedCall::~NamedCall() {
-  if (names_calls) setCall(before_, since_before_);
+  if (names_calls) setCall(before_, since_before_, limit_before_);
 }
 
 void reachStage(WorkStage stage) {
   if (shared_state != nullptr) shared_state->stage = stage;
 }
 
+std::size_t threadCount() {
+  const std::filesystem::directory_iterator threads("/proc/self/task");
+  return static_cast<std::size_t>(std::distance(begin(threads), end(threads)));
+}
+
 WorkEnd runForked(const std::function<int()>& body, double call_limit,
                   const std::atomic<bool>& stop) {
+  static const int forgets = ::pthread_atfork(nullptr, nullptr, forgetWaiting);
+  static_cast<void>(forgets);
   const SharedMemory memory;
   std::cout << std::flush;  // else the copy would print it once more
   std::fflush(nullptr);

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 
 namespace cdiff::core {
+
+/// Kind of the calls to SUMO.
+inline constexpr const char* kSimulatorCall = "simulator";
 
 // Work in a copy of this process: where code of others crashes or hangs in it, this process lives
 // on and says what that code was.
@@ -18,7 +22,8 @@ namespace cdiff::core {
 /// that began the work.
 class NamedCall {
  public:
-  enum class Limit { kNone, kOfTheWork };
+  /// What ends a call that goes on: nothing, a stop signal, or also the limit of the work.
+  enum class Limit { kNone, kWhenStopped, kOfTheWork };
   /// `kind` and `name` say what is called ("metric", "ego_jerk").
   NamedCall(const char* kind, const std::string& name, Limit limit = Limit::kOfTheWork);
   /// The call that was going on before goes on.
@@ -29,6 +34,7 @@ class NamedCall {
  private:
   std::string before_;
   std::int64_t since_before_ = 0;
+  Limit limit_before_ = Limit::kNone;
 };
 
 /// How far work has come that leaves a result in a folder.
@@ -41,17 +47,22 @@ void reachStage(WorkStage stage);
 struct WorkEnd {
   WorkStage stage = WorkStage::kNothing;  ///< the last one that was reached
   std::optional<int> exit_code;  ///< what the work returned; absent where it did not return
-  std::string how;           ///< it did not: "signal 11 (Segmentation fault)", "exit code 0", ...
-  std::string kind;          ///< of the call that was going on then; empty: none
+  std::string how;  ///< it did not: "signal 11 (Segmentation fault)", "exit code 0", ...
+  /// Of the call that was going on then; empty: none, or it did not end the work: a signal came
+  /// from outside.
+  std::string kind;
   std::string name;          ///< of that call
-  bool interrupted = false;  ///< it was ended because a stop signal had come
+  bool interrupted = false;  ///< a stop signal had come, or ended it
 };
+
+/// Of this process. A copy of it has one.
+std::size_t threadCount();
 
 /// Runs `work` in a copy of this process and waits for its end. This process must have one thread;
 /// `work` must not throw. A named call that takes longer than `call_limit` [s of wall time] ends
-/// the copy. Once `stop` is true the copy gets SIGINT; a call that goes on for 10 s more, or until
-/// `stop` is true again, ends it. The copy ends with this process. Throws SimulatorError when no
-/// process can be made.
+/// the copy. Once `stop` is true the copy gets SIGINT. It is ended when a call, or the work after
+/// its result, goes on for 10 s more or until `stop` is true again, half a second later or more.
+/// The copy ends with this process. Throws SimulatorError when no process can be made.
 WorkEnd runForked(const std::function<int()>& work, double call_limit,
                   const std::atomic<bool>& stop);
 

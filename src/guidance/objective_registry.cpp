@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "guidance/objective_registry.h"
 
+#include <utility>
+
+#include "core/forked_work.h"
 #include "core/registry.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "guidance/collision_avoidance_objective.h"
@@ -17,6 +20,8 @@ namespace cdiff::guidance {
 namespace {
 
 using core::InputError;
+
+constexpr const char* kKind = "guidance objective";
 
 template <class Kind>
 std::unique_ptr<Objective> make() {
@@ -44,9 +49,54 @@ using Registry = core::Registry<ObjectiveDescriptor>;
 
 /// Never destroyed: it holds functions of plug-ins, whose libraries may be unloaded before.
 Registry& table() {
-  static Registry& objectives = *new Registry("guidance objective", packageObjectives());
+  static Registry& objectives = *new Registry(kKind, packageObjectives());
   return objectives;
 }
+
+/// An objective of a plug-in, whose calls are named to whoever waits for this process.
+class ForeignObjective : public Objective {
+ public:
+  ForeignObjective(std::string name, std::unique_ptr<Objective> objective)
+      : name_(std::move(name)), objective_(std::move(objective)) {}
+  ~ForeignObjective() override {
+    const core::NamedCall call(kKind, name_);
+    objective_.reset();
+  }
+
+  void describe(core::OptionsVisitor& visitor) override {
+    const core::NamedCall call(kKind, name_);
+    objective_->describe(visitor);
+  }
+  void validate() const override {
+    const core::NamedCall call(kKind, name_);
+    objective_->validate();
+  }
+  void prepare(const GuidanceScene& scene) override {
+    const core::NamedCall call(kKind, name_);
+    objective_->prepare(scene);
+  }
+  double evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout,
+                  traffic::Rollout& gradient) const override {
+    const core::NamedCall call(kKind, name_);
+    return objective_->evaluate(scene, rollout, gradient);
+  }
+  std::unique_ptr<Objective> clone() const override {
+    const core::NamedCall call(kKind, name_);
+    return wrap(name_, objective_->clone());
+  }
+
+  /// Throws InputError where the plug-in gave none.
+  static std::unique_ptr<Objective> wrap(const std::string& name,
+                                         std::unique_ptr<Objective> objective) {
+    if (objective) return std::make_unique<ForeignObjective>(name, std::move(objective));
+    throw InputError(kKind + (" '" + name) + "' of " + table().sourceOf(name) +
+                     ": its constructor or clone() gives none; its author must mend it");
+  }
+
+ private:
+  std::string name_;
+  std::unique_ptr<Objective> objective_;
+};
 
 }  // namespace
 
@@ -63,10 +113,12 @@ std::vector<std::string> objectiveNames() { return table().names(); }
 const char* objectiveText(const std::string& name) { return table().at(name).help.c_str(); }
 
 std::unique_ptr<Objective> makeObjective(const std::string& name) {
-  auto objective = table().at(name).make();
-  if (objective) return objective;
-  throw InputError("guidance objective '" + name + "' of " + table().sourceOf(name) +
-                   ": its constructor gives none; its author must mend it");
+  const ObjectiveDescriptor& descriptor = table().at(name);
+  if (table().sourceOf(name) == core::kThisPackage) return descriptor.make();
+  const core::NamedCall call(kKind, name);
+  return ForeignObjective::wrap(name, descriptor.make());
 }
+
+std::string objectiveSource(const std::string& name) { return table().sourceOf(name); }
 
 }  // namespace cdiff::guidance

@@ -23,5 +23,7 @@ std::vector<std::string> objectiveNames();
 /// unknown name, naming the nearest one; so does `makeObjective`.
 const char* objectiveText(const std::string& name);
 std::unique_ptr<Objective> makeObjective(const std::string& name);
+/// Who registered an objective; "" for an unknown name.
+std::string objectiveSource(const std::string& name);
 
 }  // namespace cdiff::guidance

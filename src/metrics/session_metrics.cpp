@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "core/forked_work.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
 #include "metrics/tick_observer.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::metrics {
 
@@ -50,29 +52,48 @@ class Report final : public MetricSink {
   }
 
   void setList(const std::string& place, std::vector<MetricEntry> entries) override {
+    requirePlace(place);
     measures_.lists[place] = std::move(entries);
   }
 
  private:
+  /// Throws core::Error unless a list fits beside the measures of a part of summary.json.
+  void requirePlace(const std::string& place) const {
+    const std::vector<std::string> keys = core::splitText(place, '/');
+    bool free = keys.size() == 2 && measures_.lists.count(place) == 0 &&
+                place == "/" + keys[0] + "/" + keys[1];
+    bool known = false;
+    for (const MeasureDefinition& definition : measureDefinitions()) {
+      const std::vector<std::string> taken = core::splitText(definition.place, '/');
+      if (!free || taken.front() != keys[0]) continue;
+      known = true;
+      free = taken[1] != keys[1];
+    }
+    if (free && known) return;
+    throw core::Error("a list at '" + core::shortened(place) +
+                      "'; expected /PART/NAME with a part of summary.json and a new name");
+  }
+
   const MetricDescriptor& metric_;
   SessionMeasures& measures_;
 };
 
 /// What a metric threw in one of its functions, or nothing.
 template <class Call>
-std::optional<traffic::Fault> faultOf(const MetricDescriptor& metric, const char* function,
-                                      std::uint64_t tick, const Call& call) {
+std::optional<traffic::Fault> faultOf(
+    const MetricDescriptor& metric, const char* function, std::uint64_t tick, const Call& call,
+    core::NamedCall::Limit limit = core::NamedCall::Limit::kOfTheWork) {
   const auto fault = [&](const std::string& text) {
     return traffic::Fault{tick, "metric:" + metric.name,
                           std::string(function) + "() of metric '" + metric.name + "' of " +
                               metric.source + " threw: " + text + "; its measures are left out"};
   };
-  const core::NamedCall named("metric", metric.name);
+  const core::NamedCall named("metric", metric.name, limit);
   try {
     call();
     return std::nullopt;
   } catch (const std::exception& error) {
-    return fault(error.what());
+    return fault(traffic::thrownFaultText(error));
   } catch (...) {
     return fault("an exception of an unknown type");
   }
@@ -110,9 +131,12 @@ class SessionMetrics::Metrics {
         metrics_.push_back({&descriptor, nullptr, fault});
         continue;
       }
-      const core::NamedCall call("metric", descriptor.name, core::NamedCall::Limit::kNone);
-      metrics_.push_back({&descriptor, descriptor.make(context_), std::nullopt});
-      if (metrics_.back().metric) continue;
+      Running made{&descriptor, nullptr, std::nullopt};
+      made.fault = faultOf(
+          descriptor, "make", 0, [&] { made.metric = descriptor.make(context_); },
+          core::NamedCall::Limit::kWhenStopped);
+      metrics_.push_back(std::move(made));
+      if (metrics_.back().metric || metrics_.back().fault) continue;
       throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +
                              ": its constructor gives none; its author must mend it");
     }

@@ -5,18 +5,24 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <new>
+#include <utility>
 
 #include "core/forked_work.h"
+#include "core/program.h"
 #include "core/registry.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/planner_by_slot.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::planners {
 namespace {
 
 using core::InputError;
 using planning::PlannerDescriptor;
+
+constexpr const char* kKind = "planner";
 
 /// The preset of a rig must hold the cameras that a planner needs.
 std::string faultOfCameras(const PlannerDescriptor& descriptor) {
@@ -50,7 +56,7 @@ using Registry = core::Registry<PlannerDescriptor>;
 
 /// Never destroyed: it holds functions of plug-ins, whose libraries may be unloaded before.
 Registry& table() {
-  static Registry& planners = *new Registry("planner", packagePlanners());
+  static Registry& planners = *new Registry(kKind, packagePlanners());
   return planners;
 }
 
@@ -79,17 +85,60 @@ planning::PlannerParts withRig(const PlannerDescriptor& descriptor, planning::Pl
   return parts;
 }
 
+/// A planner of a plug-in, whose calls are named to whoever waits for this process.
+class ForeignPlanner : public planning::Planner {
+ public:
+  ForeignPlanner(std::string name, std::unique_ptr<planning::Planner> planner)
+      : name_(std::move(name)), planner_(std::move(planner)) {}
+  ~ForeignPlanner() override {
+    const core::NamedCall call(kKind, name_);
+    planner_.reset();
+  }
+  std::vector<planning::PlannedAction> plan(
+      const traffic::TrafficSnapshot& snapshot,
+      const std::vector<planning::PlanningTask>& tasks) override {
+    const core::NamedCall call(kKind, name_);
+    return planner_->plan(snapshot, tasks);
+  }
+  void setGuidance(const guidance::GuidanceOptions& guidance) override {
+    const core::NamedCall call(kKind, name_);
+    planner_->setGuidance(guidance);
+  }
+
+ private:
+  std::string name_;
+  std::unique_ptr<planning::Planner> planner_;
+};
+
+/// Fails over what the constructor of a plug-in's planner threw.
+[[noreturn]] void failConstructor(const std::string& what, const std::exception& error) {
+  const std::string text = what + traffic::thrownFaultText(error) +
+                           "; correct what it names, or its author must mend it";
+  const bool ran_out = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  const bool known = dynamic_cast<const core::Error*>(&error) != nullptr;
+  if (ran_out || (known && core::failureOf(error).exit_code == core::ExitCode::kRunTimeError))
+    throw core::Error(text);
+  throw InputError(text);
+}
+
+/// Errors of the constructors of this package say what the user must change; those of plug-ins need
+/// the name of their author, too.
 std::unique_ptr<planning::Planner> construct(const PlannerDescriptor& descriptor,
                                              const planning::PlannerParts& parts) {
-  const core::NamedCall call("planner", descriptor.name, core::NamedCall::Limit::kNone);
+  const std::string source = table().sourceOf(descriptor.name);
+  const std::string what =
+      "planner '" + descriptor.name + "' of " + source + ": its constructor throws: ";
+  const bool foreign = source != core::kThisPackage && !isBySlot(descriptor.name);
+  const core::NamedCall call(kKind, descriptor.name, core::NamedCall::Limit::kWhenStopped);
   try {
-    return descriptor.make(parts);
-  } catch (const std::exception&) {
-    throw;
+    auto planner = descriptor.make(parts);
+    if (!planner || !foreign) return planner;
+    return std::make_unique<ForeignPlanner>(descriptor.name, std::move(planner));
+  } catch (const std::exception& error) {
+    if (!foreign || core::failureOf(error).exit_code == core::ExitCode::kInterrupted) throw;
+    failConstructor(what, error);
   } catch (...) {
-    throw InputError("planner '" + descriptor.name + "' of " + table().sourceOf(descriptor.name) +
-                     ": its constructor throws something that is no std::exception; its author "
-                     "must mend it");
+    throw InputError(what + "something that is no std::exception; its author must mend it");
   }
 }
 

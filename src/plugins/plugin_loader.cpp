@@ -181,6 +181,23 @@ void addAll(const Plugin& plugin, const std::string& what, LoadedPlugin& loaded)
   }
 }
 
+/// Runs what every command runs of planners' options and of objectives, code of the author.
+void askForOptions(const std::string& what) {
+  ask(what, "the options of its planners or objectives", [] {
+    const planning::PlannerOptionsTable options = planners::defaultOptions();
+    core::dumpOptions(options);
+    const guidance::GuidanceOptions guidance;
+    core::dumpOptions(guidance);
+  });
+}
+
+/// Defaults need not be valid: a planner may ask for a file of the user's.
+void tryValidation() {
+  planners::defaultOptions().validate();
+  for (const guidance::WeightedObjective& entry : guidance::GuidanceOptions().objectives)
+    entry.objective->validate();
+}
+
 LoadedPlugin loadHere(const PluginLibrary& library) {
   const std::string file = "plug-in '" + library.file.string() + "' (";
   const std::string what = file + "named by " + library.named_by + ")";
@@ -199,6 +216,7 @@ LoadedPlugin loadHere(const PluginLibrary& library) {
     });
     requireVersion(*plugin, of_class);
     addAll(*plugin, of_class, loaded);
+    askForOptions(of_class);
   }
   return loaded;
 }
@@ -220,6 +238,7 @@ void requireLoadable(const PluginLibrary& library) {
         const core::NamedCall call("plug-in", library.file.string());
         try {
           loadHere(library);
+          tryValidation();
         } catch (...) {
           // It is said where the library is loaded for use.
         }

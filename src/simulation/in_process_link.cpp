@@ -51,7 +51,7 @@ const SumoCalls& libsumoCalls() {
 /// Says what is being called.
 class InProcessLink::Call : public Guard {
  private:
-  core::NamedCall call_{"simulator", "libsumo"};
+  core::NamedCall call_{core::kSimulatorCall, "libsumo"};
 };
 
 InProcessLink::Turn::Turn() {

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// A plug-in for the tests that ends or stops the program: its planner as the key quitter.end says,
-/// its metric as the variable CRASHING_METRIC says. Both drive and measure for a while before.
+/// its objective as its option says, its metric as the variable CRASHING_METRIC says. Planner and
+/// metric drive and measure for a while before.
 #include <class_loader/class_loader.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "e2e_cdiff/plugins/plugin.h"
 
 namespace {
 
 constexpr int kCallsBefore = 5;
-
-struct QuitterOptions {
-  std::string end = "none";
-
-  void describe(cdiff::core::OptionsVisitor& visitor) {
-    visitor.text({"end", "", "How it ends the program."}, end,
-                 {"none", "segmentation_fault", "abort", "exit", "endless", "constructor_fault",
-                  "constructor_number"});
-  }
-  void validate() const {}
-};
 
 void endProgram(const std::string& how) {
   if (how == "segmentation_fault") std::raise(SIGSEGV);
@@ -32,11 +25,30 @@ void endProgram(const std::string& how) {
   }
 }
 
+struct QuitterOptions {
+  std::string end = "none";
+
+  void describe(cdiff::core::OptionsVisitor& visitor) {
+    visitor.text(
+        {"end", "", "How it ends the program."}, end,
+        {"none", "segmentation_fault", "abort", "exit", "endless", "constructor_fault",
+         "constructor_number", "constructor_exception", "constructor_endless", "validate_exit"});
+  }
+  void validate() const {
+    if (end == "validate_exit") endProgram("exit");
+  }
+};
+
 class Quitter : public cdiff::planning::Planner {
  public:
   explicit Quitter(const QuitterOptions& options) : options_(options) {
     if (options_.end == "constructor_fault") std::raise(SIGSEGV);
     if (options_.end == "constructor_number") throw 5;
+    if (options_.end == "constructor_exception") throw std::runtime_error("no license");
+    if (options_.end == "constructor_endless") {
+      std::ofstream(std::getenv("CRASHING_MARK")) << "here";
+      endProgram("endless");
+    }
   }
 
   std::vector<cdiff::planning::PlannedAction> plan(
@@ -54,6 +66,24 @@ class Quitter : public cdiff::planning::Planner {
   int calls_ = 0;
 };
 
+class QuittingObjective : public cdiff::guidance::Objective {
+ public:
+  void describe(cdiff::core::OptionsVisitor& visitor) override {
+    visitor.text({"end", "", "How it ends the program."}, end_, {"none", "abort"});
+  }
+  double evaluate(const cdiff::guidance::GuidanceScene&, const cdiff::traffic::Rollout&,
+                  cdiff::traffic::Rollout&) const override {
+    endProgram(end_);
+    return 0.0;
+  }
+  std::unique_ptr<Objective> clone() const override {
+    return std::make_unique<QuittingObjective>(*this);
+  }
+
+ private:
+  std::string end_ = "none";
+};
+
 constexpr cdiff::metrics::MeasureDefinition kCalls = {
     "crashing_calls",
     "",
@@ -67,6 +97,11 @@ constexpr cdiff::metrics::MeasureDefinition kCalls = {
 
 class CrashingMetric : public cdiff::metrics::Metric {
  public:
+  CrashingMetric() {
+    const char* end = std::getenv("CRASHING_METRIC");
+    if (end != nullptr && std::string(end) == "constructor_exception")
+      throw std::runtime_error(std::string(5000, 'x'));
+  }
   void observe(const cdiff::metrics::MetricTick&) override {
     const char* end = std::getenv("CRASHING_METRIC");
     if (++calls_ > kCallsBefore && end != nullptr) endProgram(end);
@@ -91,6 +126,10 @@ class CrashingPlugin : public cdiff::plugins::Plugin {
       return std::make_unique<Quitter>(parts.options.of<QuitterOptions>());
     };
     return {quitter};
+  }
+  std::vector<cdiff::guidance::ObjectiveDescriptor> objectives() const override {
+    return {
+        {"quitting", "Ends the program.", [] { return std::make_unique<QuittingObjective>(); }}};
   }
   std::vector<cdiff::metrics::MetricDescriptor> metrics() const override {
     return {

@@ -92,6 +92,83 @@ TEST_F(CrashingPlugins, APlannerThatThrowsANumberInItsConstructorIsBadInput) {
   EXPECT_FALSE(fs::exists(results()));
 }
 
+TEST_F(CrashingPlugins, APlannerThatThrowsInItsConstructorIsNamed) {
+  EXPECT_EQ(cdiff(session("constructor_exception")), 3) << output();
+  expectOutput("planner 'quitter' of plug-in '");
+  expectOutput("no license");
+}
+
+TEST_F(CrashingPlugins, AnObjectiveThatEndsTheProgramIsNamedByTheResult) {
+  std::vector<std::string> command = session("none");
+  command[5] = "diffusion";
+  command.insert(command.end(), {"--set", "ego_guidance.quitting.weight=1", "--set",
+                                 "ego_guidance.quitting.end=abort"});
+  EXPECT_EQ(cdiff(command), 2) << output();
+  expectResult("error", "guidance objective 'quitting'", false);
+}
+
+TEST_F(CrashingPlugins, OptionsThatEndTheProgramGiveAnError) {
+  EXPECT_EQ(cdiff(session("validate_exit")), 2) << output();
+  expectOutput(CRASHING_PLUGIN);
+}
+
+TEST_F(CrashingPlugins, AnEndlessConstructorEndsAtTheSecondSignal) {
+  ::setenv("CRASHING_MARK", path("mark").c_str(), 1);
+  test::ProgramRun run(CDIFF_PROGRAM, session("constructor_endless"), path("output"));
+  while (!run.ended() && !fs::exists(path("mark")))
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (!run.ended()) {
+    run.signal(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  }
+  EXPECT_EQ(run.wait(), 130) << output();
+  expectOutput("planner 'quitter' of plug-in '");
+}
+
+// As a terminal's Ctrl-C, which reaches the process that waits and its copy.
+TEST_F(CrashingPlugins, AnInterruptedCommandBlamesNobody) {
+  for (int delay = 150; delay < 450; delay += 30) {  // [ms]
+    test::ProgramRun run(CDIFF_PROGRAM, {"validate", "crossing_straight"}, path("output"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+    if (run.ended()) continue;
+    run.signal(SIGINT);
+    const int exit_code = run.wait();
+    EXPECT_TRUE(exit_code == 0 || exit_code == 130 || exit_code == 128 + SIGINT) << exit_code;
+    EXPECT_EQ(output().find("mend"), std::string::npos) << output();
+    EXPECT_EQ(output().find("check the program sumo"), std::string::npos) << output();
+    EXPECT_EQ(output().find("had loaded"), std::string::npos) << output();
+  }
+}
+
+TEST_F(CrashingPlugins, AWhatIfThatAPlannerEndsGivesAnError) {
+  std::vector<std::string> command = session("none");
+  EXPECT_LE(cdiff(command), 1) << output();
+  EXPECT_EQ(
+      cdiff({"what_if", results(), "--at", "0.5", "--ego", "quitter", "--set", "quitter.end=exit"}),
+      2)
+      << output();
+  expectOutput("planner 'quitter' of plug-in '");
+}
+
+TEST_F(CrashingPlugins, AReplayThatAMetricEndsGivesAnError) {
+  std::vector<std::string> command = session("none");
+  command.push_back("--record");
+  EXPECT_LE(cdiff(command), 1) << output();
+  ::setenv("CRASHING_METRIC", "exit", 1);
+  EXPECT_EQ(cdiff({"replay", results() + "/session.bag", "--results", path("replayed")}), 2)
+      << output();
+  expectOutput("metric 'crashing_metric' of plug-in '");
+}
+
+TEST_F(CrashingPlugins, ASessionOfADataSetThatAPlannerEndsHasFailed) {
+  EXPECT_EQ(cdiff({"collect", "--scenarios", "crossing_straight", "--seeds", "1", "--results",
+                   path("data"), "--set", "protocol.time_limit=2", "--set", "ego_planner=quitter",
+                   "--set", "quitter.end=exit"}),
+            2)
+      << output();
+  expectOutput("planner 'quitter' of plug-in '");
+}
+
 TEST_F(CrashingPlugins, APlannerWithoutAnAnswerIsEnded) {
   std::vector<std::string> command = session("endless");
   command.insert(command.end(), {"--answer-timeout", "1"});
@@ -119,6 +196,14 @@ TEST_F(CrashingPlugins, AMetricThatEndsTheProgramIsNamedAndLeftOut) {
   EXPECT_EQ(cdiff(session("none")), 2) << output();
   expectResult("error", "metric 'crashing_metric'");
   EXPECT_TRUE(summary()["metrics"]["crashing_calls"]["value"].is_null());
+}
+
+TEST_F(CrashingPlugins, AMetricThatThrowsInItsConstructorIsLeftOut) {
+  ::setenv("CRASHING_METRIC", "constructor_exception", 1);
+  EXPECT_LE(cdiff(session("none")), 1) << output();
+  EXPECT_TRUE(summary()["metrics"]["crashing_calls"]["value"].is_null());
+  const std::string fault = summary()["faults"].back()["text"];
+  EXPECT_LT(fault.size(), 1100U);
 }
 
 }  // namespace

@@ -41,6 +41,15 @@ MetricDescriptor ticksMetric(const std::string& source) {
           source};
 }
 
+std::string list_place;  ///< of the list that `Lister` reports
+
+/// Reports nothing but a list.
+class Lister final : public Metric {
+ public:
+  void observe(const MetricTick&) override {}
+  void report(MetricSink& sink) const override { sink.setList(list_place, {}); }
+};
+
 /// The registration below stays for the program's life: each test that needs it calls this.
 void registerOnce() {
   if (findMeasure(kTicks.name) == nullptr) registerMetric(ticksMetric("ticks_plugin.so"));
@@ -207,6 +216,30 @@ TEST(MetricRegistry, RefusesNamesAndPlacesThatNoFileCouldHold) {
     EXPECT_NE(refusalOf(descriptor).find("must lie below"), std::string::npos) << place;
   }
   EXPECT_EQ(findMeasure("other_ticks"), nullptr);
+}
+
+TEST(MetricRegistry, RefusesAListThatFitsNowhereInTheSummary) {
+  static constexpr MeasureDefinition kOwn = {
+      "test_lists", "", "Lists", "", Direction::kNeither, Subject::kEgo, "A measure.", "", 4,
+  };
+  registerMetric({"test_lister",
+                  "Reports a list.",
+                  {kOwn},
+                  [](const MetricContext&) { return std::make_unique<Lister>(); },
+                  "lister.so"});
+  const test::StraightRoad road;
+  for (const char* place :
+       {"", "/", "/cbv", "/cbv/", "/nowhere/list", "/cbv/list/below", "/ego/collisions"}) {
+    list_place = place;
+    const SessionMeasures measures = SessionMetrics({}, road.drivable_area, road.route).measures();
+    ASSERT_EQ(measures.faults.size(), 1U) << place;
+    EXPECT_EQ(measures.faults.front().source, "metric:test_lister");
+    EXPECT_EQ(measures.lists.count(place), 0U);
+  }
+  list_place = "/cbv/test_list";
+  const SessionMeasures measures = SessionMetrics({}, road.drivable_area, road.route).measures();
+  EXPECT_TRUE(measures.faults.empty());
+  EXPECT_EQ(measures.lists.count(list_place), 1U);
 }
 
 // Last: from here on every session has a metric that reports a measure of another one.
