@@ -78,7 +78,12 @@ std::vector<std::string> environmentWith(const std::string& name, const std::str
 }
 
 std::string signalText(int signal) {
-  return "signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
+  const std::string text = "signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
+  if (signal == SIGKILL)
+    return text + " from outside: from a person, or from the kernel, which was out of memory";
+  if (signal == SIGXCPU)
+    return text + ": more CPU time than it may take; raise the limit with `ulimit -t`";
+  return text;
 }
 
 ProcessOutput::ProcessOutput() : descriptor_(::memfd_create("process output", MFD_CLOEXEC)) {}
@@ -114,6 +119,7 @@ void becomeChild(pid_t parent, const ProcessStreams& streams) {
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::signal(SIGINT, SIG_DFL);  // which shells ignore in what they start in the background
   const int from = streams.input >= 0 ? streams.input : ::open("/dev/null", O_RDONLY);
   const int to = streams.output >= 0 ? streams.output : openLog(streams);
   if (from >= 0) ::dup2(from, STDIN_FILENO);

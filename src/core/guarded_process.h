@@ -32,7 +32,8 @@ std::filesystem::path findProgram(const std::string& name, const std::string& pa
 /// This process's environment as "NAME=value" texts, with one variable set to `value`.
 std::vector<std::string> environmentWith(const std::string& name, const std::string& value);
 
-/// Name of a signal for messages: "signal 11 (Segmentation fault)".
+/// Name of a signal for messages: "signal 11 (Segmentation fault)"; who sent it where that is
+/// known.
 std::string signalText(int signal);
 
 /// Where a child's standard streams lead. The descriptors belong to the caller and stay open here.
@@ -46,8 +47,8 @@ struct ProcessStreams {
 };
 
 /// Makes a process that was just forked the leader of a group of its own with these streams, no
-/// other descriptor and no blocked signal. It is killed when the thread that forked it in process
-/// `parent` ends. Only async-signal-safe calls.
+/// other descriptor, no blocked signal and SIGINT not ignored. It is killed when the thread that
+/// forked it in process `parent` ends. Only async-signal-safe calls.
 void becomeChild(pid_t parent, const ProcessStreams& streams);
 
 /// Reaps a child that leads a process group, and kills what is left of the group; without `wait`
@@ -108,7 +109,7 @@ class GuardedProcess : public ChildProcess {
   int exitCode() override;
   /// The signal that ended it; 0 when none did, or while it runs.
   int endSignal();
-  /// How it ended: "exit code 1", "signal 9 (Killed)", "still running".
+  /// How it ended: "exit code 1", "signal 11 (Segmentation fault)", "still running".
   std::string endText();
 
   /// From now on the child is killed once `seconds` have passed, unless the deadline is cleared

@@ -23,10 +23,12 @@ SimulatedVehicle PersonObserver::bodyOf(const std::string& id, const PersonState
   body.id = id;
   body.dimensions = dimensions_of_type_.at(person.type);
   const libsumo::TraCIPosition& place = person.position;
-  body.state.heading = headingFromAngle(person.angle);
-  body.state.position = {place.x, place.y};
-  body.state.elevation = place.z == libsumo::INVALID_DOUBLE_VALUE ? 0.0 : place.z;
-  body.state.speed = std::max(0.0, person.speed);
+  body.state.heading = headingFromAngle(finiteAnswer(person.angle, "angle", id));
+  body.state.position = {finiteAnswer(place.x, "position", id),
+                         finiteAnswer(place.y, "position", id)};
+  const double elevation = finiteAnswer(place.z, "elevation", id);
+  body.state.elevation = elevation == libsumo::INVALID_DOUBLE_VALUE ? 0.0 : elevation;
+  body.state.speed = std::max(0.0, finiteAnswer(person.speed, "speed", id));
   return body;
 }
 

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <string>
+
 #include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::simulation {
@@ -9,6 +11,10 @@ namespace cdiff::simulation {
 // SUMO's conventions and ours: SUMO places a vehicle by the center of its front bumper and an angle
 // in degrees clockwise from north; we by the center of its box and a heading in radians
 // counter-clockwise from east. center = front - L/2 (cos, sin)(heading).
+
+/// A value that SUMO answers with. Throws SimulatorError naming it and whose it is when it is not
+/// finite.
+double finiteAnswer(double value, const char* quantity, const std::string& id);
 
 /// Heading of a navigation angle [deg], in (-pi, pi] [rad].
 double headingFromAngle(double angle_degrees);

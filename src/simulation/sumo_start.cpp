@@ -80,11 +80,24 @@ void requireHarmless(const SumoSession& session) {
   requireHarmlessDemand(core::readFile(session.demand_file, "demand"), demand);
 }
 
+/// Again, with a port of its own, where another program is faster to connect.
+std::unique_ptr<SumoLink> linkToProcess(const SumoCommand& command, double call_timeout) {
+  constexpr int kAttempts = 5;
+  for (int left = kAttempts; left > 1; --left) {
+    try {
+      return std::make_unique<TraciLink>(command, call_timeout);
+    } catch (const OtherClient&) {
+      continue;
+    }
+  }
+  return std::make_unique<TraciLink>(command, call_timeout);
+}
+
 std::unique_ptr<SumoLink> linkTo(const SumoOptions& options, const SumoSession& session) {
   const SumoCommand command = commandFor(options, session);
   if (session.link == "libsumo")
     return std::make_unique<InProcessLink>(command.arguments, command.log_folder);
-  return std::make_unique<TraciLink>(command, options.step_timeout);
+  return linkToProcess(command, options.step_timeout);
 }
 
 /// Whether SUMO refuses the network even without a demand.

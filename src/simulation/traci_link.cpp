@@ -130,10 +130,11 @@ SumoProcess::Start SumoProcess::tryStart(const SumoCommand& command, const fs::p
     if (process_->ended()) {
       const std::string words = lastWords();
       if (words.find("already in use") != std::string::npos) return Start::kPortTaken;
+      if (hasMetOtherClient()) return Start::kOtherClient;
       if (const std::string reason = refusal(); !reason.empty()) throw SumoRefusal(reason);
       throw core::SimulatorError("SUMO did not start (" + process_->endText() + "): " + words);
     }
-    if (holdsSocketOn(process_->id(), port_, kEstablished)) return Start::kOtherClient;
+    if (hasMetOtherClient()) return Start::kOtherClient;
     if (std::chrono::steady_clock::now() > limit) {
       throw core::SimulatorError("SUMO did not listen within " +
                                  core::formatNumber(command.start_timeout) + " s");
@@ -162,6 +163,14 @@ std::string SumoProcess::refusal() const {
   return text + (assertion.empty() ? "" : ": assertion " + assertion);
 }
 
+bool SumoProcess::hasMetOtherClient() const {
+  if (!process_->ended()) return holdsSocketOn(process_->id(), port_, kEstablished);
+  // What SUMO and its assertions say of a client that sends what is no request, or goes.
+  const std::string words = lastWords();
+  const auto tells_of = [&](const char* part) { return words.find(part) != std::string::npos; };
+  return tells_of("tcpip::Socket::rec") || tells_of("Storage::");
+}
+
 /// Says what is being called, selects this session, holds signals back (an interrupted read would
 /// look like a lost SUMO) and sets the deadline.
 class TraciLink::Deadline : public Guard {
@@ -180,7 +189,7 @@ class TraciLink::Deadline : public Guard {
 
  private:
   /// An answer that libtraci cannot read fails one of its assertions, which ends the process.
-  core::NamedCall call_{"simulator", "libtraci", core::NamedCall::Limit::kNone};
+  core::NamedCall call_{core::kSimulatorCall, "libtraci", core::NamedCall::Limit::kNone};
   TraciLink& link_;
   sigset_t previous_;
 };
@@ -197,9 +206,10 @@ TraciLink::TraciLink(const SumoCommand& command, double call_timeout)
 }
 
 void TraciLink::connect() {
+  constexpr int kRetries = 0;  // SUMO listens
   const Deadline deadline(*this);
   try {
-    version_ = libtraci::Simulation::init(sumo_.port(), 5, "127.0.0.1", label_).second;
+    version_ = libtraci::Simulation::init(sumo_.port(), kRetries, "127.0.0.1", label_).second;
     connected_ = true;
   } catch (...) {
     fail("loading the network and the demand");
@@ -229,6 +239,11 @@ std::string TraciLink::lossText(const std::string& what, const std::string& reas
   if (process.deadlineMissed()) {
     return "SUMO did not answer for " + core::formatNumber(limit_) + " s (" + what +
            ") and was ended";
+  }
+  const bool hung_up = reason.rfind("tcpip::Socket", 0) == 0 || reason.rfind("send failed", 0) == 0;
+  if (!loaded_ && hung_up && sumo_.hasMetOtherClient()) {
+    throw OtherClient("another program connected to SUMO's port " + std::to_string(sumo_.port()) +
+                      " before this one; end it");
   }
   const std::string refusal = sumo_.refusal();
   if (!refusal.empty() && (!loaded_ || process.endSignal() == 0)) throw SumoRefusal(refusal);

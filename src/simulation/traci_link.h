@@ -22,6 +22,12 @@ int freePort();
 /// does not connect: SUMO would take the attempt for its only client.
 bool listensOn(int process_id, int port);
 
+/// Another program connected to SUMO before this one; SUMO takes one client only.
+class OtherClient : public core::SimulatorError {
+ public:
+  using core::SimulatorError::SimulatorError;
+};
+
 /// How SUMO is started.
 struct SumoCommand {
   std::string binary = "sumo";         ///< program name or file
@@ -50,6 +56,8 @@ class SumoProcess {
   /// SUMO's reason for having ended: the first sentence of its error log, or the assertion that
   /// failed; empty when it named none, runs, or was killed from outside.
   std::string refusal() const;
+  /// Before this program is its client: whether SUMO has another one, or ended over one.
+  bool hasMetOtherClient() const;
 
  private:
   enum class Start { kListening, kPortTaken, kOtherClient };
@@ -64,7 +72,8 @@ class SumoProcess {
 /// time [s]; a SUMO that does not answer by then is ended.
 class TraciLink : public SumoLink {
  public:
-  /// Starts SUMO and connects. `call_timeout` bounds each guarded call.
+  /// Starts SUMO and connects. `call_timeout` bounds each guarded call. Throws OtherClient where
+  /// another program was faster.
   TraciLink(const SumoCommand& command, double call_timeout);
   /// Closes the session and ends SUMO.
   ~TraciLink() override;

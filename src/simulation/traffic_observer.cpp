@@ -32,20 +32,25 @@ bool placed(const libsumo::TraCIPosition& front) {
   return front.x != libsumo::INVALID_DOUBLE_VALUE && front.y != libsumo::INVALID_DOUBLE_VALUE;
 }
 
-double finiteOrZero(double value) { return value == libsumo::INVALID_DOUBLE_VALUE ? 0.0 : value; }
+double knownOrZero(double value) { return value == libsumo::INVALID_DOUBLE_VALUE ? 0.0 : value; }
 
 SimulatedVehicle vehicleFrom(const std::string& id, const TraCIResults& results,
                              const libsumo::TraCIPosition& front,
                              const traffic::VehicleDimensions& dimensions) {
+  const auto finite = [&id](double value, const char* quantity) {
+    return finiteAnswer(value, quantity, id);
+  };
   SimulatedVehicle vehicle;
   vehicle.id = id;
   vehicle.dimensions = dimensions;
-  vehicle.state.heading = headingFromAngle(numberOf(results, libsumo::VAR_ANGLE));
-  vehicle.state.position =
-      centerBehind({front.x, front.y}, vehicle.state.heading, dimensions.length);
-  vehicle.state.elevation = finiteOrZero(front.z);
-  vehicle.state.speed = std::max(0.0, finiteOrZero(numberOf(results, libsumo::VAR_SPEED)));
-  vehicle.acceleration = finiteOrZero(numberOf(results, libsumo::VAR_ACCELERATION));
+  vehicle.state.heading = headingFromAngle(finite(numberOf(results, libsumo::VAR_ANGLE), "angle"));
+  vehicle.state.position = centerBehind({finite(front.x, "position"), finite(front.y, "position")},
+                                        vehicle.state.heading, dimensions.length);
+  vehicle.state.elevation = finite(knownOrZero(front.z), "elevation");
+  const double speed = finite(numberOf(results, libsumo::VAR_SPEED), "speed");
+  vehicle.state.speed = std::max(0.0, knownOrZero(speed));
+  vehicle.acceleration =
+      finite(knownOrZero(numberOf(results, libsumo::VAR_ACCELERATION)), "acceleration");
   vehicle.lane_id = textOf(results, libsumo::VAR_LANE_ID);
   return vehicle;
 }

@@ -83,16 +83,32 @@ def whole(source):
 for _ in range(1200):
     real.sendall(whole(client))
     client.sendall(whole(real))
-whole(client)
-client.sendall(bytes(4))
-sumo.kill()
 )";
 
 TEST_F(FalseSumo, AnAnswerWithoutLengthLaterLeavesTheTraceUntilThen) {
-  install(kPassesOn);
+  install(kPassesOn + "whole(client)\nclient.sendall(bytes(4))\nsumo.kill()");
   expectErrorOfTheSimulator();
   const auto trace = core::readFile(path("results") + "/trace_cut_off.csv", "trace");
   EXPECT_GT(core::splitText(trace, '\n').size(), 10U);
+}
+
+/// From then on variables of this number and type have no number (the first, where it has several).
+std::string withoutNumber(const std::string& variable_and_type) {
+  return kPassesOn + "import re\nwhile True:\n    real.sendall(whole(client))\n" +
+         "    client.sendall(re.sub(rb'(?s)(" + variable_and_type +
+         ").{8}', lambda found: found[1] + bytes([127, 248]) + bytes(6), whole(real)))";
+}
+
+TEST_F(FalseSumo, AVehiclesStateThatIsNoNumberIsAnErrorOfTheSimulator) {
+  const std::string speed = "\\x40\\x00\\x0b";
+  const std::string angle = "\\x43\\x00\\x0b";
+  const std::string position = "\\x39\\x00\\x03";
+  for (const std::string& variable : {speed, angle, position}) {
+    install(withoutNumber(variable));
+    expectErrorOfTheSimulator();
+    expectOutput("nan");
+    fs::remove_all(path("results"));
+  }
 }
 
 }  // namespace

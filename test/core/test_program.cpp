@@ -169,6 +169,16 @@ TEST(GuardedProcess, DistinguishesExitCodeAndSignal) {
   EXPECT_EQ(crashes.endText(), "signal 11 (Segmentation fault)");
 }
 
+TEST(GuardedProcess, SaysWhereAKillingSignalComesFrom) {
+  GuardedProcess killed("/bin/sh", {"-c", "kill -KILL $$"}, {}, {"/dev/null"});
+  ASSERT_TRUE(killed.waitForEnd(10.0));
+  EXPECT_EQ(killed.endText().rfind("signal 9 (Killed) from outside", 0), 0U) << killed.endText();
+  GuardedProcess late("/bin/sh", {"-c", "kill -XCPU $$"}, {}, {"/dev/null"});
+  ASSERT_TRUE(late.waitForEnd(10.0));
+  EXPECT_EQ(late.endSignal(), SIGXCPU);
+  EXPECT_NE(late.endText().find("`ulimit -t`"), std::string::npos) << late.endText();
+}
+
 TEST(GuardedProcess, ProgramsAreFoundPastFoldersThatCannotBeRead) {
   EXPECT_EQ(findProgram("/bin/sh", "dash"), "/bin/sh");
   ::setenv("PATH", "/nowhere:/proc/1/fd:/bin", 1);

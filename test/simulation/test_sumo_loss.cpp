@@ -184,6 +184,48 @@ TEST(SumoStart, SaysThatAnotherProgramConnectedFirst) {
       << error;
 }
 
+/// Starts with a program that does this in Python the first time and is SUMO from then on.
+void startBehind(const std::string& first) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  SumoSession session;
+  session.network_file = made.file;
+  SumoOptions options;
+  options.binary = (folder.path() / "late_sumo").string();
+  std::ofstream(options.binary)
+      << "#!/usr/bin/python3\nimport os, socket, sys, time\n"
+         "try:\n    os.mkdir(sys.argv[0] + '.started')\nexcept FileExistsError:\n"
+         "    os.execv('/usr/bin/sumo', ['sumo', *sys.argv[1:]])\n"
+         "port = int(sys.argv[sys.argv.index('--remote-port') + 1])\n"
+      << first;
+  std::filesystem::permissions(options.binary, std::filesystem::perms::owner_all);
+  SumoSimulator simulator(options, session, made.network);
+  simulator.step({});
+  EXPECT_TRUE(simulator.vehicles().empty());
+}
+
+// What SUMO 1.15 does with a client that connects first and then goes, or sends what is no request.
+TEST(SumoStart, TriesAgainWhereAnotherClientEndedSumo) {
+  startBehind("sys.exit('Error: tcpip::Socket::recvAndCheck @ recv: peer shutdown')\n");
+  startBehind("sys.exit('Error: Storage::readChar(): invalid position')\n");
+  startBehind(
+      "print('sumo: ./src/foreign/tcpip/socket.cpp:547: bool '\n"
+      "      'tcpip::Socket::receiveExact(tcpip::Storage&): Assertion `totalLen > lengthLen\\' '\n"
+      "      'failed.', flush=True)\nos.abort()\n");
+}
+
+TEST(SumoStart, TriesAgainWhereSumoServesAnotherClient) {
+  startBehind(
+      "server = socket.create_server(('127.0.0.1', port))\n"
+      "link, _ = server.accept()\nlink.close()\n"
+      "other = socket.create_connection(('127.0.0.1', port))\nkept, _ = server.accept()\n"
+      "server.close()\ntime.sleep(60)\n");
+  startBehind(
+      "server = socket.create_server(('127.0.0.1', port))\n"
+      "link, _ = server.accept()\nlink.close()\nserver.close()\n"
+      "sys.exit('Error: tcpip::Socket::recvAndCheck @ recv: peer shutdown')\n");
+}
+
 TEST(SumoStart, NamesAMissingNetwork) {
   const test::TemporaryFolder folder;
   const test::SumoNetwork made = test::makeCrossing(folder, false);
