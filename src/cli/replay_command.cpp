@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "core/markup.h"
+#include "core/program.h"
 #include "node_graph/bags/replay.h"
 
 namespace cdiff::cli {
@@ -18,15 +20,17 @@ struct ReplayArguments {
 };
 
 int replay(const ReplayArguments& arguments) {
+  core::catchStopSignals();
   const node_graph::ReplayResult result =
       node_graph::replayBag(arguments.bag, arguments.results, arguments.overwrite);
   for (const std::string& finding : result.findings)
-    std::cerr << "cdiff: bag '" << arguments.bag << "': " << finding << "\n";
+    std::cerr << "cdiff: bag '" << arguments.bag << "': " << core::plainText(finding) << "\n";
   if (!result.findings.empty())
     std::cerr << "cdiff: the recording is damaged; the result uses what could be read\n";
   if (!result.video_error.empty())
-    std::cerr << "cdiff: " << result.video_error << "; the other results are not affected\n";
-  if (!result.failure.empty()) std::cerr << "cdiff: " << result.failure << "\n";
+    std::cerr << "cdiff: " << core::plainText(result.video_error)
+              << "; the other results are not affected\n";
+  if (!result.failure.empty()) std::cerr << "cdiff: " << core::plainText(result.failure) << "\n";
   if (!arguments.quiet) std::cout << result.table << std::flush;
   return result.exit_code;
 }

@@ -12,11 +12,11 @@
 #include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "core/file_descriptor.h"
+#include "core/folder_access.h"
 #include "core/program.h"
 #include "core/spelling.h"
 #include "core/text.h"
@@ -37,8 +37,9 @@ fs::path libraryFolder() {
 }
 
 [[noreturn]] void failWriting(const fs::path& path, int reason) {
-  throw InputError("cannot write '" + path.string() + "': " + writeErrorText(reason) +
-                   "; check that the folder exists, is writable and has room");
+  failOverFile("cannot write '" + path.string() + "': " + writeErrorText(reason) +
+                   "; check that the folder exists, is writable and has room",
+               reason);
 }
 
 /// Whether all of it was written and reached the disk; errno says why not.
@@ -108,7 +109,8 @@ void requireRegular(mode_t mode, const std::string& name) {
 }
 
 [[noreturn]] void failReading(const std::string& name) {
-  throw InputError("cannot read " + name + ": " + std::strerror(errno));
+  const int reason = errno;
+  failOverFile("cannot read " + name + ": " + writeErrorText(reason), reason);
 }
 
 [[noreturn]] void refuseSize(const std::string& name, std::uintmax_t size, std::uintmax_t most) {
@@ -167,12 +169,17 @@ bool isFolder(const fs::path& path) { return statusOf(path) == fs::file_type::di
 fs::path temporaryFolder() {
   std::error_code error;
   fs::path folder = fs::temp_directory_path(error);
-  if (!error && ::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0) return folder;
+  std::string reason = "which is no folder that can be written to; set it to one, or unset it";
+  if (!error && ::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0) {
+    const std::string path = folder.string();
+    if (path.find(',') == std::string::npos && path.find("${") == std::string::npos) return folder;
+    reason = "where SUMO takes ',' and '${' for more than a name; set it to another folder";
+  }
   for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {
     const char* given = std::getenv(name);
     if (given == nullptr) continue;
-    throw InputError(std::string("environment variable ") + name + " is '" + given +
-                     "', which is no folder that can be written to; set it to one, or unset it");
+    throw InputError(std::string("environment variable ") + name + " is '" + given + "', " +
+                     reason);
   }
   throw InputError("no temporary folder can be written to; set TMPDIR to one");
 }

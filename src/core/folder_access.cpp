@@ -22,8 +22,13 @@ namespace {
 constexpr const char* kDraftStem = ".cdiff_draft.";
 }  // namespace
 
+void failOverFile(const std::string& text, int error) {
+  if (error == EMFILE || error == ENFILE) throw TooManyOpenFiles(text);
+  throw InputError(text);
+}
+
 void failOn(const fs::path& path, const std::string& what, int error) {
-  throw InputError("cannot " + what + " '" + path.string() + "': " + writeErrorText(error));
+  failOverFile("cannot " + what + " '" + path.string() + "': " + writeErrorText(error), error);
 }
 
 bool isSame(const struct stat& left, const struct stat& right) {

@@ -9,12 +9,23 @@
 #include <string_view>
 
 #include "core/file_descriptor.h"
+#include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {
 
 // What locks, leases and records do with folders: no link is followed, and nothing is replaced.
 
-/// Throws InputError: "cannot WHAT 'path': REASON".
+/// A file cannot be opened because too many are open. To those who go on without the file it is as
+/// any that cannot be opened; to the user it is a run-time error.
+class TooManyOpenFiles : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Throws InputError over a file; TooManyOpenFiles where that is why. `error` is of errno.
+[[noreturn]] void failOverFile(const std::string& text, int error);
+
+/// The same: "cannot WHAT 'path': REASON".
 [[noreturn]] void failOn(const std::filesystem::path& path, const std::string& what, int error);
 
 /// Whether two files are one.

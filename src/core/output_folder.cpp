@@ -416,6 +416,8 @@ bool PendingFile::place() {
 void PendingFile::claimOrKeep() {
   try {
     folder_.claim(name_);
+  } catch (const TooManyOpenFiles&) {
+    throw;
   } catch (const InputError& error) {
     kept_ = true;
     throw InputError(std::string(error.what()) + "; what was to be written is in '" +
@@ -434,6 +436,10 @@ void PendingFile::restore() {
 }
 
 void PendingFile::discard() {
+  // First without a file that is opened for it, since there may be too many.
+  const int directory = folder_.descriptor_.get();
+  if (!kept_ && isSameFile(descriptor_.get(), directory, part_.c_str()))
+    ::unlinkat(directory, part_.c_str(), 0);
   descriptor_.close();
   if (!kept_) folder_.remove({part_});
 }
@@ -441,8 +447,9 @@ void PendingFile::discard() {
 void PendingFile::fail(int reason) {
   const fs::path path = folder_.path() / name_;
   discard();
-  throw InputError("cannot write '" + path.string() + "': " + writeErrorText(reason) +
-                   "; check that the folder exists, is writable and has room");
+  failOverFile("cannot write '" + path.string() + "': " + writeErrorText(reason) +
+                   "; check that the folder exists, is writable and has room",
+               reason);
 }
 
 void writeOwnFile(const fs::path& path, std::string_view content) {

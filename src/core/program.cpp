@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <new>
 
+#include "core/folder_access.h"
 #include "core/markup.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -95,6 +97,9 @@ bool stopRequested() {
 std::string writeErrorText(int error) {
   const std::string text = std::strerror(error);
   rlimit limit{};
+  if (error == EMFILE && ::getrlimit(RLIMIT_NOFILE, &limit) == 0)
+    return text + ": this process may have " + std::to_string(limit.rlim_cur) +
+           " open at a time; raise the limit with `ulimit -n`";
   if (error != EFBIG || ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
     return text;
   return text + ": this process may write no file beyond " + std::to_string(limit.rlim_cur) +
@@ -111,19 +116,25 @@ const Type* as(const std::exception& error) {
 std::string pathText(const std::filesystem::filesystem_error& error) {
   const std::string first = error.path1().string();
   const std::string path = first.empty() ? "the working directory" : "'" + first + "'";
-  return "cannot use " + path + ": " + error.code().message() +
+  return "cannot use " + path + ": " + writeErrorText(error.code().value()) +
          "; a path that exists and can be read was expected";
+}
+
+bool isOfTooMany(const std::filesystem::filesystem_error& error) {
+  return error.code() == std::errc::too_many_files_open ||
+         error.code() == std::errc::too_many_files_open_in_system;
 }
 
 }  // namespace
 
 Failure failureOf(const std::exception& error) {
   const std::string text = error.what();
+  if (as<TooManyOpenFiles>(error) != nullptr) return {ExitCode::kRunTimeError, text};
   if (as<InputError>(error) != nullptr) return {ExitCode::kBadInput, text};
   if (as<Interrupted>(error) != nullptr) return {ExitCode::kInterrupted, text};
   if (as<Error>(error) != nullptr) return {ExitCode::kRunTimeError, text};
   if (const auto* path = as<std::filesystem::filesystem_error>(error))
-    return {ExitCode::kBadInput, pathText(*path)};
+    return {isOfTooMany(*path) ? ExitCode::kRunTimeError : ExitCode::kBadInput, pathText(*path)};
   if (as<std::bad_alloc>(error) != nullptr || as<std::length_error>(error) != nullptr) {
     return {
         ExitCode::kRunTimeError,
@@ -138,7 +149,9 @@ Failure failureOf(const std::exception& error) {
   return {ExitCode::kRunTimeError, text};
 }
 
-int reportFailure(const std::function<int()>& call) {
+namespace {
+
+int exitCodeOf(const std::function<int()>& call) {
   try {
     return call();
   } catch (const std::exception& error) {
@@ -146,6 +159,27 @@ int reportFailure(const std::function<int()>& call) {
     std::cerr << "cdiff: " << plainText(failure.text) << "\n";
     return failure.exit_code;
   }
+}
+
+/// Why the standard output did not take all that was printed; 0 where it did.
+int outputError() {
+  std::cout.flush();
+  const bool flushed = std::fflush(stdout) == 0;
+  if (flushed && !std::cout.bad() && std::ferror(stdout) == 0) return 0;
+  // The write that failed may lie far behind: one more has the same reason.
+  return ::write(STDOUT_FILENO, "\n", 1) < 0 ? errno : EIO;
+}
+
+}  // namespace
+
+int reportFailure(const std::function<int()>& call) {
+  const int exit_code = exitCodeOf(call);
+  const int error = outputError();
+  // A reader that closes its pipe ("| head") has read all that it wants.
+  if (error == 0 || error == EPIPE) return exit_code;
+  std::cerr << "cdiff: cannot write to the standard output: " << writeErrorText(error)
+            << "; a file or terminal with room for what is printed was expected\n";
+  return exit_code == ExitCode::kPassed ? ExitCode::kRunTimeError : exit_code;
 }
 
 }  // namespace cdiff::core

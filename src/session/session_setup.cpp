@@ -22,7 +22,10 @@ const ScenarioOptions& validated(const ScenarioOptions& options) {
 map::ImportedNetwork imported(const std::string& source) {
   map::ImportedNetwork network = map::importNetwork(source);
   const std::string name = "network '" + network.source.string() + "'";
-  simulation::requirePlainPath(network.file, name);
+  const bool cached = network.file != network.source;
+  simulation::requirePlainPath(
+      network.file,
+      cached ? "cache folder '" + core::cacheFolder().string() + "' (E2E_CDIFF_CACHE)" : name);
   simulation::requireHarmlessNetwork(network.text, name);
   return network;
 }

@@ -50,6 +50,26 @@ TEST_F(Messages, ALimitThatLeavesNoMemoryIsNamed) {
   }
 }
 
+TEST_F(Messages, ALimitThatLeavesNoOpenFileIsNamed) {
+  const std::string command = "ulimit -n 12; exec " CDIFF_PROGRAM
+                              " run crossing_straight --quiet --results '" +
+                              path("results") + "'";
+  EXPECT_EQ(run("/bin/bash", {"-c", command}), 2);
+  expectOutput("`ulimit -n`");
+}
+
+// A reader that leaves early has what it wants.
+TEST_F(Messages, OutputThatCannotBeWrittenIsAnError) {
+  for (const std::string command : {"--version", "run --help", "validate crossing_straight"}) {
+    EXPECT_EQ(run("/bin/bash", {"-c", "exec " CDIFF_PROGRAM " " + command + " >/dev/full"}), 2)
+        << command;
+    expectOutput("cdiff: cannot write to the standard output: No space left on device");
+    EXPECT_EQ(run("/bin/bash", {"-c", "set -o pipefail; " CDIFF_PROGRAM " " + command + " | :"}), 0)
+        << command << output();
+  }
+  EXPECT_EQ(run("/bin/bash", {"-c", "exec " CDIFF_PROGRAM " drive >/dev/full"}), 3);
+}
+
 TEST_F(Messages, AnUnknownOptionIsNamedWithTheNearest) {
   EXPECT_EQ(cdiff({"run", "roundabout_cross", "--sed", "3"}), 3);
   expectOutput(
@@ -94,6 +114,14 @@ TEST_F(Messages, ControlCharactersOfAFileDoNotReachTheTerminal) {
   }
 }
 
+TEST_F(Messages, NorDoThoseOfASessionThatBreaksInItsOwnProcess) {
+  EXPECT_EQ(cdiff({"run", "crossing_straight", "--cbv-planner", "pdm_lite", "--quiet", "--results",
+                   "/proc/none\x1b[31mred"}),
+            3);
+  expectOutput("\uFFFD[31mred");
+  EXPECT_EQ(output().find('\x1b'), std::string::npos);
+}
+
 TEST_F(Messages, AModeThatIsNoneIsExplained) {
   EXPECT_EQ(cdiff({"run", "roundabout_cross", "--mode", "agressive"}), 3);
   expectOutput(
@@ -126,6 +154,24 @@ TEST_F(Messages, AMissingTemporaryFolderIsNamed) {
   const Variable variable("TMPDIR", path("none"));
   EXPECT_EQ(cdiff({"run", "roundabout_cross", "--quiet", "--results", path("results")}), 3);
   expectOutput("environment variable TMPDIR is '" + path("none") + "'");
+}
+
+TEST_F(Messages, AFolderWhosePathSumoTakesApartIsNamed) {
+  std::string text = core::readFile(
+      core::shareFolder() / "networks" / "crossing_district" / "crossing_district.net.xml", "road");
+  text.replace(text.find("<lane "), 6, "<lane disallow=\"drone\" ");  // which the cache is without
+  std::ofstream(path("own.net.xml")) << text;
+  const std::vector<std::string> command = {
+      "run", "crossing_straight", "--network", path("own.net.xml"), "--results", path("results")};
+  for (const char* name : {"TMPDIR", "E2E_CDIFF_CACHE"}) {
+    for (const std::string folder : {"a,b", "${HOME}"}) {
+      fs::create_directory(path(folder));
+      const Variable variable(name, path(folder));
+      EXPECT_EQ(cdiff(command), 3) << name;
+      expectOutput(name);
+      expectOutput("'" + path(folder) + "'");
+    }
+  }
 }
 
 TEST_F(Messages, WithoutATemporaryFolderNoBatchStartsAndTheDoctorSaysSo) {

@@ -2,8 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <thread>
 
 #include "core/file.h"
 #include "core/output_folder.h"
@@ -106,6 +109,24 @@ TEST_F(ReplayCommand, SaysWhatIsWrongAndLeavesNothingHalfWritten) {
   EXPECT_EQ(replay(), 2) << output();
   EXPECT_NE(output().find("the recording is damaged"), std::string::npos) << output();
   EXPECT_EQ(summary()["status"], "timed_out");
+}
+
+TEST_F(ReplayCommand, AnInterruptedOneLeavesNothing) {
+  record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
+          "protocol.time_limit=10", "--set", "verdict.judge=false"});
+  int exit_code = 0;
+  for (int left = 20; left > 0 && exit_code == 0; --left) {  // it may end before the signal comes
+    fs::remove_all(replayed());
+    test::ProgramRun replay(CDIFF_PROGRAM,
+                            {"replay", bag().string(), "--results", replayed().string()},
+                            scratch_.path() / "output");
+    while (!replay.ended() && !fs::exists(replayed() / "session.yaml"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    replay.signal(SIGINT);
+    exit_code = replay.wait();
+  }
+  EXPECT_EQ(exit_code, 130) << output();
+  EXPECT_FALSE(fs::exists(replayed()));
 }
 
 TEST_F(ReplayCommand, LeavesTheResultOfADrivenSessionAlone) {

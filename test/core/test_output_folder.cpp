@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -24,6 +25,7 @@
 #include "core/file.h"
 #include "core/folder_access.h"
 #include "core/output_folder.h"
+#include "core/program.h"
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "support/temporary_folder.h"
@@ -446,6 +448,34 @@ TEST_F(OutputFolderTest, DraftsOfKilledWritersAreRemovedAndThoseOfOthersStay) {
   output.removeUnfinished();
   EXPECT_EQ(namesOf(folder()),
             (std::set<std::string>{written.path.filename(), ".cdiff_draft.linked"}));
+}
+
+TEST(OutputFolder, TooManyOpenFilesAreARunTimeErrorAndLeaveNoHalfFile) {
+  const test::TemporaryFolder scratch;
+  OutputFolder folder(scratch.path() / "out");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const FileDescriptor lowest(::dup(STDIN_FILENO));
+  int failures = 0;
+  for (rlim_t left = 0; left < 8; ++left) {
+    const rlimit few{static_cast<rlim_t>(lowest.get()) + 1 + left, before.rlim_max};
+    Failure failure{0, ""};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+    try {
+      folder.write("file", "text");
+    } catch (const std::exception& error) {
+      failure = failureOf(error);
+    }
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+    EXPECT_EQ(namesOf(scratch.path() / "out").count("file.part"), 0U) << left;
+    if (failure.exit_code == 0) continue;
+    ++failures;
+    EXPECT_EQ(failure.exit_code, 2) << failure.text;
+    EXPECT_NE(failure.text.find("`ulimit -n`"), std::string::npos) << failure.text;
+  }
+  EXPECT_GE(failures, 3);
+  folder.write("file", "whole");
+  EXPECT_EQ(readFile(scratch.path() / "out" / "file", "file"), "whole");
 }
 
 }  // namespace

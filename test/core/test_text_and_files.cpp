@@ -212,6 +212,9 @@ TEST(Failure, SaysWhatAnExceptionMeansToTheUser) {
       "status", "loop", std::make_error_code(std::errc::too_many_symbolic_link_levels));
   EXPECT_EQ(failureOf(path).exit_code, 3);
   EXPECT_EQ(failureOf(path).text.find("cannot use 'loop': Too many levels"), 0U);
+  const std::filesystem::filesystem_error open_files(
+      "list", "folder", std::make_error_code(std::errc::too_many_files_open));
+  EXPECT_EQ(failureOf(open_files).exit_code, 2);
   EXPECT_EQ(failureOf(std::bad_alloc()).text.find("out of memory"), 0U);
   EXPECT_EQ(failureOf(std::length_error("vector::_M_default_append")).text.find("out of memory"),
             0U);

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/program.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
@@ -445,6 +447,16 @@ TEST_F(DamagedBags, TwoHundredRandomDamagesAreNamedOrChangeNothing) {
     EXPECT_TRUE(!findings.empty() || digest == whole) << "case " << i;
   }
   EXPECT_GE(named, kCases / 2);  // all truncations
+}
+
+TEST_F(DamagedBags, AReplayThatIsInterruptedLeavesNothing) {
+  fs::remove_all(results());
+  core::catchStopSignals();
+  std::raise(SIGINT);
+  EXPECT_THROW(replayBag(bag(), results()), core::Interrupted);
+  EXPECT_FALSE(fs::exists(results()));
+  core::catchStopSignals();  // takes the request back
+  for (const int signal : core::stopSignals()) std::signal(signal, SIG_DFL);
 }
 
 }  // namespace

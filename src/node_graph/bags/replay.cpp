@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/output_folder.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/tick_record.h"
@@ -34,14 +35,34 @@ void showTick(const RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot
   throw core::InputError(text);
 }
 
+void removeSettings(const std::filesystem::path& results) {
+  try {
+    core::OutputFolder(results).remove({"session.yaml"});
+  } catch (const core::InputError&) {
+    // It stays on the record, and goes with the next session.
+  }
+}
+
+/// Ends a replay at a stop signal.
+class StopWatch : public session::SessionObserver {
+ public:
+  void observe(const session::TickRecord& /*record*/) override {
+    if (core::stopRequested()) throw core::Interrupted("interrupted; there is no result");
+  }
+};
+
 /// Shows every tick to the result and to the video, which goes when the disk is full.
 void writeReplay(RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot& first,
                  page::ResultWriter& writer, std::unique_ptr<video::SessionVideo>& video) {
-  std::vector<session::SessionObserver*> observers = {&writer};
+  StopWatch stop_watch;
+  std::vector<session::SessionObserver*> observers = {&stop_watch, &writer};
   if (video) observers.push_back(video.get());
   try {
     showTick(session, first, observers);
     showTicks(session, observers);
+  } catch (const core::Interrupted&) {
+    removeSettings(writer.folder());  // the other files, which are not whole, go by themselves
+    throw;
   } catch (const std::exception& error) {
     if (writer.failure().empty()) throw core::Error(error.what());
     video.reset();
