@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/node_main.h"
 
+#include <malloc.h>
+
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/markup.h"
 #include "core/program.h"
 #include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/lockstep/node_process.h"
@@ -54,7 +57,7 @@ int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop,
     return body(stop);
   } catch (const std::exception& error) {
     const core::Failure failure = core::failureOf(error);
-    ROS_FATAL("%s", failure.text.c_str());
+    ROS_FATAL("%s", core::plainText(failure.text).c_str());
     return failure.exit_code;
   }
 }
@@ -193,6 +196,10 @@ int runMetricsNode(int argc, char** argv) {
 }
 
 int runRecorderNode(int argc, char** argv) {
+  // The compressor of bags takes and frees 1 MB for each chunk. On the heap the hole would be
+  // filled with what the bag keeps, and the heap would grow for hours.
+  constexpr int kLargeBuffer = 128 << 10;  // [bytes]
+  ::mallopt(M_MMAP_THRESHOLD, kLargeBuffer);
   return runNode<RecorderNode>(argc, argv, kRecorderNode);
 }
 

@@ -10,7 +10,9 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/replay.h"
+#include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/lockstep/tick_record.h"
+#include "node_graph/messages/topics.h"
 #include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_files.h"
 #include "page/result_writer.h"
@@ -39,13 +41,15 @@ class ToleratedWriter : public session::SessionObserver {
   page::ResultWriter& writer_;
 };
 
-void removeReserve(core::OutputFolder& results) {
+void removeIfPossible(core::OutputFolder& results, const std::string& name) {
   try {
-    results.remove({kReserve});
+    results.remove({name});
   } catch (const core::InputError&) {
     // It stays on the record, and goes with the next session.
   }
 }
+
+void removeReserve(core::OutputFolder& results) { removeIfPossible(results, kReserve); }
 
 int finishResult(page::ResultWriter& writer, double wall_seconds) {
   writer.finish(wall_seconds);
@@ -110,6 +114,9 @@ bool ResultReserve::adopt(const msgs::TrafficSnapshot::ConstPtr& end, double wal
     giveUp(error.what());
   }
   const int exit_code = session ? replay(*session, wall_seconds) : writeEnd(*end, wall_seconds);
+  // A recorder that was ended before the first tick leaves a bag that nobody can use.
+  if (end->tick == 0 && !nodeRuns(kRecorderNode))
+    removeIfPossible(results_, std::string(kBag) + ".active");
   writeExitCode(results_.path(), exit_code);
   return true;
 }
@@ -284,8 +291,10 @@ std::optional<int> writeReservedResult(const fs::path& results, traffic::Session
   const bool deterministic = session->setup().options().real_time_factor == 0.0;
   page::ResultWriter writer(session->setup(), factsOf(session->info(), deterministic), results);
   ToleratedWriter tolerated(writer);
+  const std::string plugins = pluginsOf(fault.source, session->setup().options());
+  const traffic::Fault named{fault.tick, fault.source, fault.text + plugins};
   for (; message; message = session->next()) {
-    const auto snapshot = endedBy(*message, status, fault);
+    const auto snapshot = endedBy(*message, status, named);
     tolerated.observe(
         TickRecordView(snapshot, session->answers(), session->setup().network()).record());
   }

@@ -5,11 +5,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <vector>
 
 #include "core/clock.h"
 #include "core/file.h"
+#include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
@@ -17,8 +20,11 @@
 #include "metrics/metric_registry.h"
 #include "metrics/session_metrics.h"
 #include "node_graph/lockstep/node_process.h"
+#include "node_graph/messages/topics.h"
 #include "node_graph/result_reserve.h"
 #include "page/result_writer.h"
+#include "planners/planner_by_slot.h"
+#include "planners/registry.h"
 #include "plugins/plugin_loader.h"
 #include "record/result_folder.h"
 #include "ros/ros.h"
@@ -26,6 +32,8 @@
 namespace cdiff::node_graph {
 namespace {
 
+/// The process of all nodes, as scripts/session names it.
+constexpr const char* kNodeletProcess = "session_nodelets";
 /// Holds the process of the roslaunch whose input was refused.
 constexpr const char* kRefusedLaunch = "e2e_cdiff_refused_launch";
 
@@ -91,7 +99,8 @@ int writeUnstarted(const session::ScenarioOptions& options, const fs::path& fold
   page::ResultWriter writer(setup, {kDeployment, "unknown", deterministic}, folder);
   traffic::TrafficSnapshot snapshot;
   snapshot.status = status;
-  snapshot.faults.push_back(fault);
+  snapshot.faults.push_back(
+      {fault.tick, fault.source, fault.text + pluginsOf(fault.source, options)});
   session::TickRecord record;
   record.snapshot = &snapshot;
   writer.observe(record);
@@ -103,6 +112,28 @@ int writeUnstarted(const session::ScenarioOptions& options, const fs::path& fold
 }  // namespace
 
 bool isPlugin(const std::string& source) { return source.rfind("plug-in ", 0) == 0; }
+
+std::string pluginsOf(const std::string& node, const session::ScenarioOptions& options) {
+  const bool all = node == kNodeletProcess;
+  const bool of_cbvs = all || node == kCbvPlannerNode || node == kDiffusionPlannerNode;
+  std::vector<std::string> names;
+  if (all || node == kEgoPlannerNode) names = planners::planningMembers(options.ego_planner);
+  for (const std::string& name :
+       of_cbvs ? planners::planningMembers(options.cbv_planner) : std::vector<std::string>()) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  std::string text;
+  for (const std::string& name : names) {
+    const std::string source = planners::sourceOf(name);
+    if (isPlugin(source)) text += "; it calls planner '" + name + "' of " + source;
+  }
+  if (!all && node != kMetricsNode) return text;
+  for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
+    if (isPlugin(metric.source))
+      text += "; it calls metric '" + metric.name + "' of " + metric.source;
+  }
+  return text;
+}
 
 void leaveOutPluginMetrics() {
   for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
@@ -144,7 +175,7 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
     writeExitCode(folder, exit_code);
     return exit_code;
   } catch (const core::InputError& error) {
-    std::cerr << error.what() << std::endl;
+    std::cerr << core::plainText(error.what()) << std::endl;
     writeRefusal(folder);
     return core::ExitCode::kBadInput;
   }

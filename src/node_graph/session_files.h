@@ -21,6 +21,9 @@ inline constexpr const char* kDeployment = "roslaunch";
 
 /// Whether a planner's or metric's source is a plug-in.
 bool isPlugin(const std::string& source);
+/// What of plug-ins a node calls, or all of them in one process ("session_nodelets"), as the end of
+/// a sentence about its end; empty where nothing.
+std::string pluginsOf(const std::string& node, const session::ScenarioOptions& options);
 /// Leaves the metrics of plug-ins out of the results of this process, and says so in them: one of
 /// them may be why the metrics node did not finish.
 void leaveOutPluginMetrics();

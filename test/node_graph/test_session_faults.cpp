@@ -33,6 +33,18 @@ class SessionFaults : public ::testing::Test {
     EXPECT_EQ(session_.leftovers(), "");
     EXPECT_FALSE(fs::exists(session_.results() / ".reserve"));
   }
+  /// Files that are only written on the way to others.
+  std::string halfFiles() const {
+    std::string names;
+    for (const auto& entry : fs::recursive_directory_iterator(session_.results())) {
+      const std::string name = entry.path().filename().string();
+      const std::string extension = entry.path().extension().string();
+      if (name == ".reserve" || name == ".lock" || extension == ".part" || extension == ".active" ||
+          name.find(".tmp") != std::string::npos)
+        names += entry.path().string() + "\n";
+    }
+    return names;
+  }
   std::size_t timesInLog(const std::string& text) const {
     const std::string log = session_.log();
     std::size_t times = 0;
@@ -202,6 +214,8 @@ TEST_F(SessionFaults, ScriptEndsThoughItsMasterIsStopped) {
   EXPECT_LT(session_.endAfter(200.0), 200.0) << session_.log();
   EXPECT_EQ(session_.exitStatus(), 0) << session_.log();
   EXPECT_EQ(session_.summary()["status"], "timed_out");
+  EXPECT_EQ(timesInLog("session: no ROS master answers at http://"), 1U) << session_.log();
+  EXPECT_EQ(halfFiles(), "");
   EXPECT_EQ(session_.leftovers(), "");
 }
 
@@ -216,6 +230,20 @@ TEST_F(SessionFaults, ScriptEndsThoughItsMasterStopsBeforeTheNodesBegin) {
   EXPECT_EQ(session_.fault().find("rosmaster: no ROS master answers at http://"), 0U)
       << session_.fault();
   EXPECT_EQ(session_.leftovers(), "");
+}
+
+// The nodes have begun their files and wait for an ego that never comes.
+TEST_F(SessionFaults, ScriptEndsThoughItsMasterStopsWhileTheNodesBegin) {
+  session_.start(script(
+      "record:=true start_timeout:=8 answer_timeout:=4 ego_planner:=external "
+      "scenario:=crossing_straight",
+      session_));
+  ASSERT_TRUE(session_.hasFile("session.yaml")) << session_.log();
+  ASSERT_TRUE(session_.signal("rosmaster", SIGSTOP)) << session_.log();
+  EXPECT_LT(session_.endAfter(200.0), 200.0) << session_.log();
+  EXPECT_EQ(session_.exitStatus(), 2) << session_.log();
+  expectError("rosmaster");
+  EXPECT_EQ(halfFiles(), "");
 }
 
 // One that ends while it starts its nodes knows only those before. Here it is a function of the
@@ -320,7 +348,9 @@ TEST_F(SessionFaults, LaunchArgumentWithASecondSignIsRefused) {
 
 TEST_F(SessionFaults, ScriptNamesAnArgumentOfAnotherKind) {
   for (const std::string argument :
-       {"record:=banana", "rviz:=1.5", "start_timeout:=abc", "watch_port:=0.5"}) {
+       {"record:=banana", "rviz:=1.5", "start_timeout:=abc", "start_timeout:=0",
+        "start_timeout:=0.0e9", "start_timeout:=1e400", "start_timeout:=1e-400", "watch_port:=0.5",
+        "watch_port:=65536", "watch_port:=99999999999999999999"}) {
     test::LaunchedSession session;
     session.start(script("scenario:=crossing_straight " + argument, session));
     EXPECT_LT(session.endAfter(100.0), 100.0);

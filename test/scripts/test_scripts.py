@@ -3,15 +3,18 @@
 
     test_scripts.py BUILD SOURCE RESULT.xml
 """
+import contextlib
 import gzip
 import io
 import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -38,6 +41,18 @@ def calls_of(script, *arguments):
 def targets_of(calls):
     """What ninja was asked for: the words behind -C FOLDER -j N."""
     return [call[5:] for call in calls if call[0] == "ninja"]
+
+
+@contextlib.contextmanager
+def unbuilt_session():
+    """scripts/session of a package that is not built, in a folder with a space: a function of its arguments."""
+    with tempfile.TemporaryDirectory() as folder:
+        scripts = Path(folder) / "my package" / "scripts"
+        scripts.mkdir(parents=True)
+        for name in ("session", "isolated", "environment"):
+            shutil.copy(SOURCE / "scripts" / name, scripts)
+        yield lambda *arguments: subprocess.run([scripts / "session", *arguments], env={**os.environ, "BUILD": "no build"}, capture_output=True, text=True,
+                                                check=False)
 
 
 class Scripts(unittest.TestCase):
@@ -465,15 +480,35 @@ esac
         self.assertIn(["e2e_cdiff_nightly_tests"], targets_of(calls_of("test", "--nightly")))
 
     def test_a_session_that_ends_at_once_keeps_its_exit_code_in_a_folder_with_a_space(self):
-        with tempfile.TemporaryDirectory() as folder:
-            scripts = Path(folder) / "my package" / "scripts"
-            scripts.mkdir(parents=True)
-            for name in ("session", "isolated", "environment"):
-                shutil.copy(SOURCE / "scripts" / name, scripts)
-            environment = {**os.environ, "BUILD": "no build"}
-            codes = [subprocess.run([scripts / "session", "scenario:=a"], env=environment, capture_output=True, check=False).returncode
-                     for _ in range(5)]
-            self.assertEqual(codes, [2] * 5)  # not built yet
+        with unbuilt_session() as session:
+            self.assertEqual([session("scenario:=a").returncode for _ in range(5)], [2] * 5)  # not built yet
+
+    def test_a_session_refuses_control_characters_and_shows_none(self):
+        with unbuilt_session() as session:
+            for value in ("max_cbv=1\n", "max_cbv=1\vseed=2", "max_cbv=\x1b[31m1", "max_cbv=1\x7f"):
+                done = session(f"set:={value}")
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertTrue(done.stderr.rstrip("\n").isprintable(), repr(done.stderr))
+            self.assertEqual(session("scenario:=\u00e4").returncode, 2)
+
+    def test_a_session_that_is_interrupted_at_once_says_so(self):
+        def catches(process):
+            status = Path(f"/proc/{process}/status").read_text()
+            return int(re.search(r"^SigCgt:\s*(\w+)$", status, re.MULTILINE)[1], 16) >> (signal.SIGHUP - 1) & 1  # the last of its traps
+
+        for delay in range(0, 100, 4):  # [ms] from when its shell takes signals
+            with self.subTest(delay=delay), tempfile.TemporaryDirectory() as folder:
+                session = subprocess.Popen([SOURCE / "scripts" / "session", "scenario:=a"], env={**os.environ, "BUILD": "no build"}, cwd=folder,
+                                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+                while session.poll() is None and not catches(session.pid):
+                    pass
+                time.sleep(delay / 1000)
+                if session.poll() is None:
+                    os.killpg(session.pid, signal.SIGINT)  # as Ctrl-C does
+                said = session.communicate(timeout=60)[0]
+                self.assertIn(session.returncode, (2, 130))  # 2: not built
+                self.assertTrue(said.strip())
+                self.assertNotIn("Traceback", said)
 
     def test_the_record_keeps_rows_of_checks_that_did_not_run(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <thread>
 
+#include "core/markup.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -105,7 +106,7 @@ void MetricsNode::openPage() {
     live_ = std::make_unique<watch::LiveSession>(
         *setup_, std::make_unique<ServiceLink>(options.at_most), portOf(parameters));
   } catch (const core::InputError& error) {
-    ROS_ERROR("%s; the session runs without its page", error.what());
+    ROS_ERROR("%s; the session runs without its page", core::plainText(error.what()).c_str());
     return;
   }
   std::cout << live_->invitation() << std::flush;  // no log may have it
@@ -233,7 +234,7 @@ int MetricsNode::finishVideo(int exit_code) {
   if (!video_) return exit_code;
   video_->finish(writer_->result());
   if (video_->error().empty()) return exit_code;
-  ROS_ERROR("%s; the other results are not affected", video_->error().c_str());
+  ROS_ERROR("%s; the other results are not affected", core::plainText(video_->error()).c_str());
   return std::max(exit_code, core::ExitCode::kRunTimeError);
 }
 

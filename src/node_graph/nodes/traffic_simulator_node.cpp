@@ -9,7 +9,6 @@
 #include "core/stage_times.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/metric_registry.h"
 #include "node_graph/lockstep/answer_waits.h"
 #include "node_graph/lockstep/hosted_nodes.h"
 #include "node_graph/lockstep/lockstep_pacer.h"
@@ -17,10 +16,10 @@
 #include "node_graph/messages/message_checks.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
+#include "node_graph/node_main.h"
 #include "node_graph/session_graph.h"
-#include "planners/planner_by_slot.h"
-#include "planners/registry.h"
 #include "rosgraph_msgs/Clock.h"
+#include "traffic/shown_fault.h"
 
 namespace cdiff::node_graph {
 namespace {
@@ -39,25 +38,6 @@ std::vector<std::string> knownParameters() {
 
 /// In a namespace a session is one of several on a master, whose clocks would contradict.
 bool ownsClock() { return ros::this_node::getNamespace() == "/"; }
-
-/// What of plug-ins a node calls, as the end of a sentence about its end; empty where nothing.
-std::string pluginsOf(const std::string& node, const session::ScenarioOptions& options) {
-  std::string text;
-  const bool of_cbvs = node == kCbvPlannerNode || node == kDiffusionPlannerNode;
-  const std::string planners = node == kEgoPlannerNode ? options.ego_planner
-                               : of_cbvs               ? options.cbv_planner
-                                                       : "";
-  for (const std::string& name : planners::planningMembers(planners)) {
-    const std::string source = planners::sourceOf(name);
-    if (isPlugin(source)) text += "; it calls planner '" + name + "' of " + source;
-  }
-  if (node != kMetricsNode) return text;
-  for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
-    if (isPlugin(metric.source))
-      text += "; it calls metric '" + metric.name + "' of " + metric.source;
-  }
-  return text;
-}
 
 const char* paceText(session::SessionControl::State state) {
   using State = session::SessionControl::State;
@@ -131,10 +111,11 @@ int TrafficSimulatorNode::run() {
     runTicks();
     core::writeStageTimes(times.get());
   }
-  services_.reset();
   writeWaits(pacer_->waits());
   waitForResult();
   reserve_.reset();
+  folder_.reset();
+  services_.reset();  // last: it waits for the ROS master, which may hang
   const int exit_code = exitCode();
   if (exit_code == core::ExitCode::kPassed) endLaunch(stop_);  // the others wait for our end
   return exit_code;
@@ -146,7 +127,7 @@ bool TrafficSimulatorNode::startWorld() {
     reserve_ = std::make_unique<ResultReserve>(*setup_, sessionInfo(world_->simulatorVersion()));
     return true;
   } catch (const core::SimulatorError& error) {
-    ROS_ERROR("%s", error.what());
+    ROS_ERROR("%s", core::plainText(error.what()).c_str());
     traffic::TrafficSnapshot snapshot;
     snapshot.status = SessionStatus::kError;
     snapshot.faults.push_back({0, "simulator", error.what()});
@@ -236,13 +217,12 @@ std::string TrafficSimulatorNode::takeCommand(const Topic& topic, const AnyMessa
 /// them, that there are more.
 void TrafficSimulatorNode::noteFault(const std::string& source, const std::string& given) {
   constexpr std::size_t kMostFaults = 200;
-  constexpr std::size_t kMostLetters = 1000;
-  std::string text = core::cutText(given, kMostLetters);
+  std::string text = traffic::shownFaultText(given);
   if (noted_faults_.size() > kMostFaults || noted_faults_.count(text) != 0) return;
   if (noted_faults_.size() == kMostFaults)
     text = "more than " + std::to_string(kMostFaults) + " faults; the rest is not named";
   noted_faults_.insert(text);
-  ROS_WARN("%s: %s", source.c_str(), text.c_str());
+  ROS_WARN("%s: %s", traffic::shownSource(source).c_str(), text.c_str());
   world_->recordFault(source, text);
 }
 
@@ -265,7 +245,10 @@ std::optional<SessionEnd> TrafficSimulatorNode::waitForParticipants() {
     for (Missing& node : watch_.notReady()) missing.push_back(std::move(node));
     return missing;
   };
-  return watch_.waitFor(missing, limits_.start);
+  auto end = watch_.waitFor(missing, limits_.start);
+  if (end && end->status == SessionStatus::kError && !masterAnswers())
+    end = SessionEnd{SessionStatus::kError, "rosmaster", kNoMaster + ("; " + end->text)};
+  return end;
 }
 
 /// The user's own nodes that do not publish yet. Commands of an ego that go elsewhere are named at
@@ -373,8 +356,10 @@ std::optional<SessionEnd> TrafficSimulatorNode::advance() {
 }
 
 void TrafficSimulatorNode::endSession(const SessionEnd& end) {
-  const std::string text = end.text + pluginsOf(end.source, setup_->options());
-  ROS_ERROR_COND(end.status == SessionStatus::kError, "%s: %s", end.source.c_str(), text.c_str());
+  const std::string text =
+      traffic::shownFaultText(end.text + pluginsOf(end.source, setup_->options()));
+  ROS_ERROR_COND(end.status == SessionStatus::kError, "%s: %s",
+                 traffic::shownSource(end.source).c_str(), text.c_str());
   world_->end(end.status, {world_->snapshot().tick, end.source, text});
 }
 
