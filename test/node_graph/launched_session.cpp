@@ -169,7 +169,8 @@ bool LaunchedSession::hasFile(const std::string& name) const {
 }
 
 bool LaunchedSession::hasTicks() const {
-  constexpr std::uintmax_t kSize = 4096;
+  constexpr std::uintmax_t kSize =
+      1 << 16;  // [bytes] the writer writes its first tick, and then so many
   std::error_code ignored;
   for (const double begin = now(); now() - begin < kPatience; pause()) {
     for (const auto& entry : fs::directory_iterator(results(), ignored)) {
