@@ -130,6 +130,17 @@ TEST(ActionRollout, ActionsOutOfRangeCountAsClamped) {
   EXPECT_EQ(beyond.leftCols(traffic::kStateColumns), at.leftCols(traffic::kStateColumns));
 }
 
+TEST(ActionRollout, FullRightMirrorsFullLeft) {
+  Rollout left = Rollout::Zero(kRows, traffic::kRolloutColumns);
+  left.col(kRolloutSteer).setOnes();
+  Rollout right = -left;
+  ActionRollout().rollOut(10.0, left);
+  ActionRollout().rollOut(10.0, right);
+  EXPECT_EQ(left.col(kRolloutX), right.col(kRolloutX));
+  EXPECT_EQ(left.col(kRolloutY), -right.col(kRolloutY));
+  EXPECT_EQ(left.col(kRolloutHeading), -right.col(kRolloutHeading));
+}
+
 TEST(ActionRollout, BackwardPassIsTheDerivative) {
   for (std::uint32_t trial = 0; trial < 4; ++trial) {
     for (const double speed : {0.5, 4.0, 9.0, 16.0}) {

@@ -43,6 +43,21 @@ TEST_F(FreeRoadTest, IsOnTheLevelOfTheVehicle) {
   EXPECT_TRUE(isFree({above}));
 }
 
+TEST(StripAlong, HasBoxesOfAtMostTwoMeters) {
+  const test::StraightRoad road;
+  for (const double length : {1.0, 2.0, 5.0, 5.9}) {
+    const auto strip = stripAlong(road.route.path(), 10.0, 10.0 + length, 1.5);
+    double whole = 0.0;
+    for (const geometry::OrientedBox& box : strip) {
+      EXPECT_LE(box.length, 2.0 + 1e-9);
+      EXPECT_EQ(box.width, 1.5);
+      whole += box.length;
+    }
+    EXPECT_NEAR(whole, length, 1e-9);
+  }
+  EXPECT_TRUE(stripAlong(road.route.path(), 10.0, 10.0, 1.5).empty());
+}
+
 /// A lane east to x = 60, a junction of 10 m with a light, and a lane on; the route along all.
 class FreeRoadAtALight : public ::testing::Test {
  protected:

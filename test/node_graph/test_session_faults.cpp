@@ -234,10 +234,10 @@ TEST_F(SessionFaults, ScriptEndsThoughItsMasterStopsBeforeTheNodesBegin) {
 
 // The nodes have begun their files and wait for an ego that never comes.
 TEST_F(SessionFaults, ScriptEndsThoughItsMasterStopsWhileTheNodesBegin) {
-  session_.start(script(
-      "record:=true start_timeout:=8 answer_timeout:=4 ego_planner:=external "
-      "scenario:=crossing_straight",
-      session_));
+  session_.start(
+      script("record:=true start_timeout:=8 answer_timeout:=4 ego_planner:=external "
+             "scenario:=crossing_straight",
+             session_));
   ASSERT_TRUE(session_.hasFile("session.yaml")) << session_.log();
   ASSERT_TRUE(session_.signal("rosmaster", SIGSTOP)) << session_.log();
   EXPECT_LT(session_.endAfter(200.0), 200.0) << session_.log();

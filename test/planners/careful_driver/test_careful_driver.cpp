@@ -101,6 +101,17 @@ TEST(CarefulDriverPlanner, StopsBehindAStandingVehicle) {
   EXPECT_LT(drive.gap(), 4.0);
 }
 
+TEST(CarefulDriverPlanner, FollowsWhatStandsSeventyMetersAhead) {
+  Drive alone;
+  Drive behind;
+  behind.add(testing::vehicleAt("parked", 80.0, 0.0, 0.0, 0.0));
+  Drive far_behind;
+  far_behind.add(testing::vehicleAt("parked", 95.0, 0.0, 0.0, 0.0));
+  const double throttle = alone.decide().action.throttle;
+  EXPECT_LT(behind.decide().action.throttle, throttle);
+  EXPECT_EQ(far_behind.decide().action.throttle, throttle);
+}
+
 // A car from the right at 8 m/s, 20 m beside the road, that can no longer yield: C
 // brakes 1.2 s later on a grid of 0.1 s, fully after 0.6 s more; with a longer delay later or
 // never.
