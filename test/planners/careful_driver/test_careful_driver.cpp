@@ -106,10 +106,10 @@ TEST(CarefulDriverPlanner, FollowsWhatStandsSeventyMetersAhead) {
   Drive behind;
   behind.add(testing::vehicleAt("parked", 80.0, 0.0, 0.0, 0.0));
   Drive far_behind;
-  far_behind.add(testing::vehicleAt("parked", 95.0, 0.0, 0.0, 0.0));
-  const double throttle = alone.decide().action.throttle;
-  EXPECT_LT(behind.decide().action.throttle, throttle);
-  EXPECT_EQ(far_behind.decide().action.throttle, throttle);
+  far_behind.add(testing::vehicleAt("parked", 110.0, 0.0, 0.0, 0.0));
+  for (Drive* drive : {&alone, &behind, &far_behind}) drive->run(1.0);
+  EXPECT_LT(behind.state().speed, alone.state().speed - 0.01);
+  EXPECT_EQ(far_behind.state().speed, alone.state().speed);
 }
 
 // A car from the right at 8 m/s, 20 m beside the road, that can no longer yield: C
