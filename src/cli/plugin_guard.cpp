@@ -49,12 +49,12 @@ std::string endText(const core::WorkEnd& end, const std::string& ended) {
   if (!end.kind.empty()) {
     const std::string source = sourceOf(end);
     return end.kind + " '" + end.name + "' of " + source + " ended " + ended + ": " + end.how +
-           (source == core::kThisPackage ? loadedText() : "; its author must mend it");
+           (core::isPlugin(source) ? "; its author must mend it" : loadedText());
   }
   const std::string text = end.stage == core::WorkStage::kResultWritten
                                ? "the program ended after its result was written: " + end.how
                                : ended + " ended before its work was done: " + end.how;
-  return text + loadedText();
+  return end.from_outside ? text : text + loadedText();
 }
 
 int runBesidePlugins(const std::function<int()>& command) {

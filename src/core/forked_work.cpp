@@ -31,7 +31,9 @@
 namespace cdiff::core {
 namespace {
 
-constexpr double kStopPatience = 10.0;  // [s] for a call that goes on when a stop signal comes
+constexpr double kStopPatience = 10.0;       // [s] for a call that goes on when a stop signal comes
+constexpr double kSecondStopPatience = 1.0;  // [s] for it when another one comes
+constexpr double kEndPatience = 70.0;        // [s] for what follows a result; a video may take 60 s
 constexpr double kSameStop = 0.5;  // [s]: a terminal and a parent process may both send a signal
 constexpr std::chrono::milliseconds kLookPeriod{10};
 
@@ -120,7 +122,8 @@ class Waiting {
               : WIFSIGNALED(status) ? signalText(WTERMSIG(status))
                                     : "exit code " + std::to_string(WEXITSTATUS(status));
     if (how_.empty() && isStopped(status)) end.interrupted = true;
-    if (how_.empty() && (isStopped(status) || isKilled(status))) return end;
+    end.from_outside = how_.empty() && (isStopped(status) || isKilled(status));
+    if (end.from_outside || (!how_.empty() && !by_call_)) return end;
     const std::string call = state_.call.data();
     const std::size_t colon = call.find(':');
     end.kind = call.substr(0, colon);
@@ -161,8 +164,19 @@ class Waiting {
     ::kill(child_, SIGINT);
   }
 
-  bool isGivenUp() const {
-    return stops_ > 1 || (stops_ == 1 && secondsFrom(stopped_at_) > kStopPatience);
+  /// Whether a call that began then is given up because of the stop signals.
+  bool isGivenUp(std::int64_t since) const {
+    if (stops_ == 0) return false;
+    const double seconds = secondsFrom(std::max(since, stopped_at_));
+    return seconds > (stops_ > 1 ? kSecondStopPatience : kStopPatience);
+  }
+
+  /// Whether the work does not end though its result is written and a stop signal came.
+  bool isEndless() {
+    if (state_.stage != WorkStage::kResultWritten || stops_ == 0) return false;
+    if (written_at_ == 0) written_at_ = steadyNow();
+    const double seconds = secondsFrom(std::max(written_at_, stopped_at_));
+    return seconds > (stops_ > 1 ? kStopPatience : kEndPatience);
   }
 
   void endWhatGoesOn() {
@@ -172,10 +186,11 @@ class Waiting {
     if (state_.since != since) return;  // another call has begun
     const double seconds = since == 0 ? 0.0 : secondsFrom(since);
     const bool late = limit == Limit::kOfTheWork && seconds > call_limit_;
-    if (late || (limit != Limit::kNone && isGivenUp())) {
+    if (late || (limit != Limit::kNone && isGivenUp(since))) {
+      by_call_ = true;
       endNow("no answer for " + formatFixed(seconds, 0) + " s");
-    } else if (state_.stage == WorkStage::kResultWritten && isGivenUp()) {
-      endNow("it did not end when it was stopped");
+    } else if (isEndless()) {
+      endNow("it went on, though it was stopped");
     }
   }
 
@@ -190,7 +205,9 @@ class Waiting {
   const std::atomic<bool>& stop_;
   int stops_ = 0;
   std::int64_t stopped_at_ = 0;
-  std::string how_;  ///< why it was ended; empty where it was not
+  std::int64_t written_at_ = 0;  ///< when the result was seen to be written; 0: not yet
+  std::string how_;              ///< why it was ended; empty where it was not
+  bool by_call_ = false;         ///< for a call that went on
 };
 
 }  // namespace

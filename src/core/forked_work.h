@@ -51,8 +51,9 @@ struct WorkEnd {
   /// Of the call that was going on then; empty: none, or it did not end the work: a signal came
   /// from outside.
   std::string kind;
-  std::string name;          ///< of that call
-  bool interrupted = false;  ///< a stop signal had come, or ended it
+  std::string name;           ///< of that call
+  bool interrupted = false;   ///< a stop signal had come, or ended it
+  bool from_outside = false;  ///< a signal ended it that no code of the process sends
 };
 
 /// Of this process. A copy of it has one.
@@ -60,9 +61,9 @@ std::size_t threadCount();
 
 /// Runs `work` in a copy of this process and waits for its end. This process must have one thread;
 /// `work` must not throw. A named call that takes longer than `call_limit` [s of wall time] ends
-/// the copy. Once `stop` is true the copy gets SIGINT. It is ended when a call, or the work after
-/// its result, goes on for 10 s more or until `stop` is true again, half a second later or more.
-/// The copy ends with this process. Throws SimulatorError when no process can be made.
+/// the copy. Once `stop` is true the copy gets SIGINT, and a call that goes on for 10 s more ends
+/// it; when `stop` is true again, half a second later or more, 1 s. The work after its result has
+/// 70 and 10 s. The copy ends with this process. Throws SimulatorError when no process can be made.
 WorkEnd runForked(const std::function<int()>& work, double call_limit,
                   const std::atomic<bool>& stop);
 

@@ -21,8 +21,8 @@ inline bool isSnakeCase(std::string_view name) {
   return name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
 }
 
-/// Who adds the entries of this package.
-inline constexpr const char* kThisPackage = "package e2e_cdiff";
+/// Whether who added an entry is a plug-in.
+inline bool isPlugin(std::string_view source) { return source.rfind("plug-in ", 0) == 0; }
 
 /// A table of entries by name, to which plug-ins add while the program runs.
 /// Descriptors (a struct with `name`) in the order in which they were added, with who added each.
@@ -32,7 +32,7 @@ class Registry {
  public:
   /// `kind` names the entries in messages ("planner"); `package` are those of this package.
   Registry(std::string kind, std::vector<Descriptor> package) : kind_(std::move(kind)) {
-    for (Descriptor& descriptor : package) add(std::move(descriptor), kThisPackage);
+    for (Descriptor& descriptor : package) add(std::move(descriptor), "package e2e_cdiff");
   }
 
   /// Throws InputError naming `source` for a name that is not snake_case or is taken.

@@ -53,6 +53,13 @@ Registry& table() {
   return objectives;
 }
 
+std::unique_ptr<Objective> requireMade(const std::string& name,
+                                       std::unique_ptr<Objective> objective) {
+  if (objective) return objective;
+  throw InputError(kKind + (" '" + name) + "' of " + table().sourceOf(name) +
+                   ": its constructor or clone() gives none; its author must mend it");
+}
+
 /// An objective of a plug-in, whose calls are named to whoever waits for this process.
 class ForeignObjective : public Objective {
  public:
@@ -82,15 +89,7 @@ class ForeignObjective : public Objective {
   }
   std::unique_ptr<Objective> clone() const override {
     const core::NamedCall call(kKind, name_);
-    return wrap(name_, objective_->clone());
-  }
-
-  /// Throws InputError where the plug-in gave none.
-  static std::unique_ptr<Objective> wrap(const std::string& name,
-                                         std::unique_ptr<Objective> objective) {
-    if (objective) return std::make_unique<ForeignObjective>(name, std::move(objective));
-    throw InputError(kKind + (" '" + name) + "' of " + table().sourceOf(name) +
-                     ": its constructor or clone() gives none; its author must mend it");
+    return std::make_unique<ForeignObjective>(name_, requireMade(name_, objective_->clone()));
   }
 
  private:
@@ -113,10 +112,10 @@ std::vector<std::string> objectiveNames() { return table().names(); }
 const char* objectiveText(const std::string& name) { return table().at(name).help.c_str(); }
 
 std::unique_ptr<Objective> makeObjective(const std::string& name) {
-  const ObjectiveDescriptor& descriptor = table().at(name);
-  if (table().sourceOf(name) == core::kThisPackage) return descriptor.make();
   const core::NamedCall call(kKind, name);
-  return ForeignObjective::wrap(name, descriptor.make());
+  auto objective = requireMade(name, table().at(name).make());
+  if (!core::isPlugin(table().sourceOf(name))) return objective;
+  return std::make_unique<ForeignObjective>(name, std::move(objective));
 }
 
 std::string objectiveSource(const std::string& name) { return table().sourceOf(name); }

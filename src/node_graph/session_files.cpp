@@ -15,6 +15,7 @@
 #include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/program.h"
+#include "core/registry.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
@@ -111,8 +112,6 @@ int writeUnstarted(const session::ScenarioOptions& options, const fs::path& fold
 
 }  // namespace
 
-bool isPlugin(const std::string& source) { return source.rfind("plug-in ", 0) == 0; }
-
 std::string pluginsOf(const std::string& node, const session::ScenarioOptions& options) {
   const bool all = node == kNodeletProcess;
   const bool of_cbvs = all || node == kCbvPlannerNode || node == kDiffusionPlannerNode;
@@ -125,11 +124,11 @@ std::string pluginsOf(const std::string& node, const session::ScenarioOptions& o
   std::string text;
   for (const std::string& name : names) {
     const std::string source = planners::sourceOf(name);
-    if (isPlugin(source)) text += "; it calls planner '" + name + "' of " + source;
+    if (core::isPlugin(source)) text += "; it calls planner '" + name + "' of " + source;
   }
   if (!all && node != kMetricsNode) return text;
   for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
-    if (isPlugin(metric.source))
+    if (core::isPlugin(metric.source))
       text += "; it calls metric '" + metric.name + "' of " + metric.source;
   }
   return text;
@@ -137,7 +136,7 @@ std::string pluginsOf(const std::string& node, const session::ScenarioOptions& o
 
 void leaveOutPluginMetrics() {
   for (const metrics::MetricDescriptor& metric : metrics::metricDescriptors()) {
-    if (!isPlugin(metric.source)) continue;
+    if (!core::isPlugin(metric.source)) continue;
     metrics::leaveOutMetric(metric.name, "metric '" + metric.name + "' of " + metric.source +
                                              " is left out: the metrics node did not finish");
   }

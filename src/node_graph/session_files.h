@@ -19,8 +19,6 @@ namespace cdiff::node_graph {
 /// "roslaunch", as results name this deployment.
 inline constexpr const char* kDeployment = "roslaunch";
 
-/// Whether a planner's or metric's source is a plug-in.
-bool isPlugin(const std::string& source);
 /// What of plug-ins a node calls, or all of them in one process ("session_nodelets"), as the end of
 /// a sentence about its end; empty where nothing.
 std::string pluginsOf(const std::string& node, const session::ScenarioOptions& options);

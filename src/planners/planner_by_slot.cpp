@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "core/forked_work.h"
 #include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -24,6 +25,7 @@ std::vector<PlannedAction> planOne(PlannerBySlot::Member& member,
                                    const traffic::TrafficSnapshot& snapshot,
                                    const std::vector<PlanningTask>& tasks) {
   std::string fault = "the planner answered for other vehicles than it was asked for";
+  const core::NamedCall call("planner", member.name);
   try {
     std::vector<PlannedAction> actions = member.planner->plan(snapshot, tasks);
     const bool all = std::equal(actions.begin(), actions.end(), tasks.begin(), tasks.end(),

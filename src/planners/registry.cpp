@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
-#include <new>
 #include <utility>
 
 #include "core/forked_work.h"
@@ -112,13 +111,12 @@ class ForeignPlanner : public planning::Planner {
 
 /// Fails over what the constructor of a plug-in's planner threw.
 [[noreturn]] void failConstructor(const std::string& what, const std::exception& error) {
-  const std::string text = what + traffic::thrownFaultText(error) +
-                           "; correct what it names, or its author must mend it";
-  const bool ran_out = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
-  const bool known = dynamic_cast<const core::Error*>(&error) != nullptr;
-  if (ran_out || (known && core::failureOf(error).exit_code == core::ExitCode::kRunTimeError))
+  const std::string text = what + traffic::thrownFaultText(error);
+  const bool known =
+      dynamic_cast<const core::Error*>(&error) != nullptr || traffic::isOfTheSystem(error);
+  if (known && core::failureOf(error).exit_code == core::ExitCode::kRunTimeError)
     throw core::Error(text);
-  throw InputError(text);
+  throw InputError(text + "; correct what it names, or its author must mend it");
 }
 
 /// Errors of the constructors of this package say what the user must change; those of plug-ins need
@@ -128,7 +126,7 @@ std::unique_ptr<planning::Planner> construct(const PlannerDescriptor& descriptor
   const std::string source = table().sourceOf(descriptor.name);
   const std::string what =
       "planner '" + descriptor.name + "' of " + source + ": its constructor throws: ";
-  const bool foreign = source != core::kThisPackage && !isBySlot(descriptor.name);
+  const bool foreign = core::isPlugin(source);
   const core::NamedCall call(kKind, descriptor.name, core::NamedCall::Limit::kWhenStopped);
   try {
     auto planner = descriptor.make(parts);

@@ -246,6 +246,10 @@ void requireLoadable(const PluginLibrary& library) {
       },
       kPatience, never);
   if (end.exit_code) return;
+  if (end.from_outside) {
+    throw core::Error("plug-in '" + library.file.string() +
+                      "' could not be loaded; the program that tried it ended: " + end.how);
+  }
   throw InputError("plug-in '" + library.file.string() + "' (named by " + library.named_by +
                    ") ends the program that loads it: " + end.how +
                    "; build it again, or its author must mend it");

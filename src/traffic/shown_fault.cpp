@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "traffic/shown_fault.h"
 
+#include <filesystem>
 #include <new>
+#include <stdexcept>
 
 #include "core/markup.h"
 #include "core/program.h"
@@ -14,9 +16,14 @@ std::string shownFaultText(std::string_view text) {
   return core::cutText(text, kMostLetters);
 }
 
+bool isOfTheSystem(const std::exception& error) {
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+         dynamic_cast<const std::length_error*>(&error) != nullptr ||
+         dynamic_cast<const std::filesystem::filesystem_error*>(&error) != nullptr;
+}
+
 std::string thrownFaultText(const std::exception& error) {
-  const bool out_of_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
-  const std::string text = out_of_memory ? core::failureOf(error).text : error.what();
+  const std::string text = isOfTheSystem(error) ? core::failureOf(error).text : error.what();
   return text.empty() ? "an exception without a text" : shownFaultText(text);
 }
 

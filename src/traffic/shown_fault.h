@@ -15,7 +15,9 @@ namespace cdiff::traffic {
 
 /// At most 1000 letters.
 std::string shownFaultText(std::string_view text);
-/// The same of what code of others threw. Memory that ran out is explained; never empty.
+/// Whether memory or a file that was missing is why, which core::failureOf explains.
+bool isOfTheSystem(const std::exception& error);
+/// The text of what code of others threw, so kept; never empty. What is of the system is explained.
 std::string thrownFaultText(const std::exception& error);
 /// Name of a node or planner; at most 100 letters.
 std::string shownSource(std::string_view source);

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <limits>
 #include <thread>
 
@@ -109,6 +110,24 @@ TEST(ForkedWork, TheSecondStopEndsWorkThatGoesOnBehindItsResult) {
       kNoLimit, catchStopSignals());
   EXPECT_TRUE(end.interrupted);
   EXPECT_EQ(end.stage, WorkStage::kResultWritten);
+  EXPECT_EQ(end.kind, "") << "the call that went on may go on";
+}
+
+TEST(ForkedWork, WhatBeginsLongAfterAStopHasItsTime) {
+  const WorkEnd end = runForked(
+      [] {
+        ::kill(::getppid(), SIGINT);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10500));
+        {
+          const NamedCall call("metric", "late");
+          std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        }
+        reachStage(WorkStage::kResultWritten);
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        return 7;
+      },
+      kNoLimit, catchStopSignals());
+  EXPECT_EQ(end.exit_code, 7);
 }
 
 TEST(ForkedWork, ACopyOfTheCopyNamesNothing) {

@@ -43,12 +43,14 @@ void removeSettings(const std::filesystem::path& results) {
   }
 }
 
+void endWhereStopped() {
+  if (core::stopRequested()) throw core::Interrupted("interrupted; there is no result");
+}
+
 /// Ends a replay at a stop signal.
 class StopWatch : public session::SessionObserver {
  public:
-  void observe(const session::TickRecord& /*record*/) override {
-    if (core::stopRequested()) throw core::Interrupted("interrupted; there is no result");
-  }
+  void observe(const session::TickRecord& /*record*/) override { endWhereStopped(); }
 };
 
 /// Shows every tick to the result and to the video, which goes when the disk is full.
@@ -112,6 +114,7 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   const Clock::time_point begin = Clock::now();
   requireReplayFolder(std::filesystem::absolute(bag), results, overwrite);
   RecordedSession session(bag);
+  endWhereStopped();
   const auto first = session.next();
   if (!first) refuseEmpty(bag, session);
   ::e2e_cdiff::SessionInfo info;

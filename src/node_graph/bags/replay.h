@@ -47,7 +47,7 @@ struct ReplayResult {
 /// `wall_seconds` of the result is what this took. Throws InputError when the bag holds nothing to
 /// evaluate, or the folder cannot be made, is in use or refused (requireReplayFolder; nothing is
 /// written then), core::Error when the result cannot be written to its end, core::Interrupted when
-/// a stop was requested (core::stopRequested; nothing is kept then).
+/// a stop was requested before the last tick (core::stopRequested; nothing is kept then).
 ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results,
                        bool overwrite = false);
 
