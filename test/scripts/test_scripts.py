@@ -483,6 +483,11 @@ esac
         with unbuilt_session() as session:
             self.assertEqual([session("scenario:=a").returncode for _ in range(5)], [2] * 5)  # not built yet
 
+    def test_a_session_begins_where_its_output_is_closed(self):
+        done = subprocess.run(["bash", "-c", f"BUILD='no build' '{SOURCE}/scripts/session' scenario:=a >&-"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2, done.stderr)  # not built
+        self.assertNotIn("file descriptor", done.stderr)
+
     def test_a_session_refuses_control_characters_and_shows_none(self):
         with unbuilt_session() as session:
             for value in ("max_cbv=1\n", "max_cbv=1\vseed=2", "max_cbv=\x1b[31m1", "max_cbv=1\x7f"):
