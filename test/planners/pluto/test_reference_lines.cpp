@@ -57,6 +57,22 @@ TEST(ReferenceLines, TheNeighborLaneIsASecondLine) {
   EXPECT_EQ(referenceLines(network, route, 20.0, at(20.0, 0.0), 1).size(), 1U);
 }
 
+TEST(ReferenceLines, TheNeighborLaneGoesOnAlongTheRoute) {
+  std::string links;
+  for (const char* lane : {"0", "1"}) {
+    links += std::string("<connection from=\"a\" to=\"b\" fromLane=\"") + lane + "\" toLane=\"" +
+             lane + "\" dir=\"s\"/>";
+  }
+  const map::RoadNetwork network =
+      networkOf(twoLanes("a", 0.0, 40.0) + twoLanes("b", 40.0, 240.0) + links);
+  const map::Route route = testing::routeAlong(network, {"a", "b"});
+  const auto lines = referenceLines(network, route, 0.0, at(0.0, 0.0), 4);
+  ASSERT_EQ(lines.size(), 2U);
+  ASSERT_EQ(lines[1].poses.size(), 121U);
+  EXPECT_NEAR(lines[1].poses.back().position.x(), 120.0, 1e-9);
+  EXPECT_NEAR(lines[1].poses.back().position.y(), 3.2, 1e-9);
+}
+
 // The left lane ends after 40 m, less than 0.8 x 120 m; the right one goes on.
 TEST(ReferenceLines, ShortLinesGoWhereThereAreLongOnes) {
   const std::string next = "<edge id=\"b\"><lane id=\"b_0\" index=\"0\" speed=\"13.89\" shape=\"" +
