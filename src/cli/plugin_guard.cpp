@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "cli/plugin_guard.h"
 
+#include <sys/resource.h>
+
 #include <atomic>
 #include <iostream>
 #include <vector>
@@ -42,6 +44,13 @@ std::string loadedText() {
   return files.empty() ? "" : "; it had loaded the plug-in " + core::joinText(files, ", ");
 }
 
+/// Libraries of others crash where memory runs out; empty where no limit is set.
+std::string limitText() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
+  return "; `ulimit -v` is " + std::to_string(limit.rlim_cur / 1024) + " and may be why";
+}
+
 }  // namespace
 
 std::string endText(const core::WorkEnd& end, const std::string& ended) {
@@ -49,7 +58,7 @@ std::string endText(const core::WorkEnd& end, const std::string& ended) {
   if (!end.kind.empty()) {
     const std::string source = sourceOf(end);
     return end.kind + " '" + end.name + "' of " + source + " ended " + ended + ": " + end.how +
-           (core::isPlugin(source) ? "; its author must mend it" : loadedText());
+           (core::isPlugin(source) ? "; its author must mend it" : loadedText() + limitText());
   }
   const std::string text = end.stage == core::WorkStage::kResultWritten
                                ? "the program ended after its result was written: " + end.how

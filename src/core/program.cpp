@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 #include "core/folder_access.h"
 #include "core/markup.h"
@@ -135,6 +136,12 @@ Failure failureOf(const std::exception& error) {
   if (as<Error>(error) != nullptr) return {ExitCode::kRunTimeError, text};
   if (const auto* path = as<std::filesystem::filesystem_error>(error))
     return {isOfTooMany(*path) ? ExitCode::kRunTimeError : ExitCode::kBadInput, pathText(*path)};
+  const auto* system = as<std::system_error>(error);
+  if (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) {
+    return {ExitCode::kRunTimeError,
+            "the system gives no further thread or process; raise `ulimit -u` and `ulimit -v`, or "
+            "close other programs"};
+  }
   if (as<std::bad_alloc>(error) != nullptr || as<std::length_error>(error) != nullptr) {
     return {
         ExitCode::kRunTimeError,

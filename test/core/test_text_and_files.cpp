@@ -215,6 +215,8 @@ TEST(Failure, SaysWhatAnExceptionMeansToTheUser) {
   const std::filesystem::filesystem_error open_files(
       "list", "folder", std::make_error_code(std::errc::too_many_files_open));
   EXPECT_EQ(failureOf(open_files).exit_code, 2);
+  const std::system_error thread(std::make_error_code(std::errc::resource_unavailable_try_again));
+  EXPECT_NE(failureOf(thread).text.find("ulimit -u"), std::string::npos);
   EXPECT_EQ(failureOf(std::bad_alloc()).text.find("out of memory"), 0U);
   EXPECT_EQ(failureOf(std::length_error("vector::_M_default_append")).text.find("out of memory"),
             0U);
