@@ -278,5 +278,18 @@ TEST(SessionRequest, ScenarioFileErrorsNameFileAndLine) {
   EXPECT_TRUE(mentions(error, "'edges'")) << error;
 }
 
+TEST(SessionRequest, ANumberOfADemandFileThatIsNoneIsNamed) {
+  const test::TemporaryFolder folder;
+  const fs::path demand = folder.path() / "a.rou.xml";
+  SessionRequest request;
+  request.scenario = shippedScenarios().front();
+  request.set = {"demand=" + demand.string()};
+  for (const char* number : {"nan", "inf", "-inf", "+Infinity", "-NaN"}) {
+    std::ofstream(demand) << "<routes><trip id=\"a\" depart=\"" << number << "\"/></routes>";
+    const std::string error = errorOf(request);
+    EXPECT_TRUE(mentions(error, "attribute 'depart' is '" + std::string(number))) << error;
+  }
+}
+
 }  // namespace
 }  // namespace cdiff::session
