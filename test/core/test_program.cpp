@@ -86,6 +86,7 @@ TEST(Program, AStopSignalBeforeThereIsAnythingToStopEndsItWithAWord) {
     const ProcessOutput errors;
     const int code = inChild([&] {
       ::dup2(errors.descriptor(), STDERR_FILENO);
+      ::signal(signal, SIG_DFL);  // shells ignore SIGINT in what they start in the background
       prepareProgram();
       ::raise(signal);
       return 0;
@@ -125,6 +126,7 @@ TEST(Program, ExitCodesOfChildrenAreSeenWhateverTheCallerIgnores) {
 TEST(Program, ThreeSignalsRequestAStop) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     EXPECT_EQ(inChild([signal] {
+                ::signal(signal, SIG_DFL);
                 const std::atomic<bool>& stop = catchStopSignals();
                 if (stop || stopRequested()) return 1;
                 ::raise(signal);
@@ -137,6 +139,7 @@ TEST(Program, ThreeSignalsRequestAStop) {
                 sigset_t one;
                 sigemptyset(&one);
                 sigaddset(&one, signal);
+                ::signal(signal, SIG_DFL);
                 ::sigprocmask(SIG_BLOCK, &one, nullptr);
                 ::raise(signal);
                 return stopRequested() ? 0 : 1;
