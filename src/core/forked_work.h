@@ -48,15 +48,15 @@ struct WorkEnd {
   WorkStage stage = WorkStage::kNothing;  ///< the last one that was reached
   std::optional<int> exit_code;  ///< what the work returned; absent where it did not return
   std::string how;  ///< it did not: "signal 11 (Segmentation fault)", "exit code 0", ...
-  /// Of the call that was going on then; empty: none, or it did not end the work: a signal came
-  /// from outside.
+  /// Of the call that was going on then; empty where there was none, or where it did not end the
+  /// work.
   std::string kind;
   std::string name;           ///< of that call
   bool interrupted = false;   ///< a stop signal had come, or ended it
   bool from_outside = false;  ///< a signal ended it that no code of the process sends
 };
 
-/// Of this process. A copy of it has one.
+/// How many threads this process has. A copy of it has one.
 std::size_t threadCount();
 
 /// Runs `work` in a copy of this process and waits for its end. This process must have one thread;
